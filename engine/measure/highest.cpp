@@ -107,24 +107,7 @@ class PeakSearch {
   std::vector<LeftOver> left_over_of(const std::vector<Candidate>& rays) const {
     std::vector<LeftOver> found;
     if (rays.empty()) return found;
-    std::vector<Vec3> points, normals;
-    std::vector<double> ranges;
-    Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
-    for (const Candidate& ray : rays) {
-      const Vec3 &p = ray.foot.point, &n = ray.foot.normal;
-      points.push_back(p);
-      normals.push_back(n);
-      ranges.push_back(in_.material.ranges(p, n).mm);
-      const double top = std::min(ranges.back(), last_material(p, n));
-      for (const Vec3& end : {Vec3(p - stock::kSkin * n), Vec3(p + top * n)}) {
-        box.lower = box.lower.cwiseMin(end);
-        box.upper = box.upper.cwiseMax(end);
-      }
-    }
-    stock::SurfaceDexels dexels(
-        stock::rays_at(std::move(points), std::move(normals), field_.design, field_.pitch_mm),
-        in_.material.raw, ranges);
-    cut(dexels, box);
+    const stock::SurfaceDexels dexels = cut_rays(rays);
     for (size_t n = 0; n < rays.size(); ++n)
       found.push_back({-kNever, dexels.heights_mm()[n], n, dexels.blocks()[n]});
     dexels.each_above([&](uint32_t n, const stock::MaterialAbove& m) {
@@ -134,10 +117,69 @@ class PeakSearch {
     return found;
   }
 
-  /// By every sweep that comes into the box.
-  void cut(stock::SurfaceDexels& dexels, const Box& box) const {
+  /// Rays when all sweeps have cut them. Thousands of cutters stand over a column, and few come down to what
+  /// is left of it: these cut first, and where that is all below their tops the others meet nothing.
+  stock::SurfaceDexels cut_rays(const std::vector<Candidate>& rays) const {
+    std::vector<Vec3> points, normals;
+    std::vector<double> ranges;
+    for (const Candidate& ray : rays) {
+      points.push_back(ray.foot.point);
+      normals.push_back(ray.foot.normal);
+      ranges.push_back(in_.material.ranges(ray.foot.point, ray.foot.normal).mm);
+    }
+    const stock::RayFieldPtr field =
+        stock::rays_at(std::move(points), std::move(normals), field_.design, field_.pitch_mm);
+    const stock::SurfaceDexels uncut(field, in_.material.raw, ranges);
+    stock::SurfaceDexels dexels = uncut;
+    constexpr double kMore = 1.5, kLeast = 0.1;  // than the highest so far; of the pitch
+    const double top = kMore * peak_.height_mm + kLeast * field_.pitch_mm;
     std::vector<uint32_t> near;
-    in_.index.find(box, near);
+    in_.index.find_below(columns_of(*field, top), box_of(*field, [&](size_t) { return top; }), near);
+    cut(dexels, near);
+    if (all_below(dexels, top)) return dexels;
+    dexels = uncut;
+    near.clear();
+    const auto last = [&](size_t n) {
+      return std::min(ranges[n], last_material(field->points[n], field->normals[n]));
+    };
+    in_.index.find(box_of(*field, last), near);
+    cut(dexels, near);
+    return dexels;
+  }
+
+  static bool all_below(const stock::SurfaceDexels& dexels, double top) {
+    constexpr double kRounding = 1e-6;  // mm
+    bool above = false;
+    dexels.each_above([&](uint32_t, const stock::MaterialAbove&) { above = true; });
+    return !above && std::all_of(dexels.heights_mm().begin(), dexels.heights_mm().end(),
+                                 [&](double height) { return height < top - kRounding; });
+  }
+
+  static Columns columns_of(const stock::RayField& field, double top) {
+    const auto top_of = [&](size_t n) -> Vec3 { return field.points[n] + top * field.normals[n]; };
+    Columns columns{top_of(0), field.normals[0]};
+    for (size_t n = 1; n < field.size(); ++n) {
+      columns.top_spread = std::max(columns.top_spread, (top_of(n) - columns.top).norm());
+      columns.normal_spread = std::max(columns.normal_spread, (field.normals[n] - columns.normal).norm());
+    }
+    return columns;
+  }
+
+  /// Around the rays from their skin up to `top(n)`, mm.
+  template <typename Top>
+  static Box box_of(const stock::RayField& field, const Top& top) {
+    Box box{Vec3::Constant(kNever), Vec3::Constant(-kNever)};
+    for (size_t n = 0; n < field.size(); ++n) {
+      const Vec3 &p = field.points[n], &normal = field.normals[n];
+      for (const Vec3& end : {Vec3(p - stock::kSkin * normal), Vec3(p + top(n) * normal)}) {
+        box.lower = box.lower.cwiseMin(end);
+        box.upper = box.upper.cwiseMax(end);
+      }
+    }
+    return box;
+  }
+
+  void cut(stock::SurfaceDexels& dexels, const std::vector<uint32_t>& near) const {
     std::vector<stock::Sweep> sweeps;
     for (size_t begin = 0, end = 0; begin < near.size(); begin = end) {
       const stock::CutterSolid& cutter = in_.cutters[near[begin]];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/rays/surface_dexels.h"
+#include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
 
@@ -32,8 +32,14 @@ bool PassRule::same(uint32_t a, uint32_t b) const {
   return std::abs(travel_[a] - travel_[b]) <= 2.0 * (middle(a) - middle(b)).norm() + pitch_mm_;
 }
 
-double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep) const {
-  return std::min(kHigh, stock::ray_height(point, normal, sweeps_[sweep], cutters_[sweep]));
+const stock::SweepMap& PassHeight::map_of(uint32_t sweep) {
+  KnownMap& known = known_[sweep % known_.size()];
+  if (known.sweep != sweep) known = {sweep, stock::sweep_map(sweeps_[sweep])};
+  return known.map;
+}
+
+double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep) {
+  return std::min(kHigh, stock::ray_height(point, normal, map_of(sweep), cutters_[sweep]));
 }
 
 double PassHeight::operator()(const Vec3& point, const Vec3& normal) {

@@ -2,12 +2,15 @@
 // Internal to this folder.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "measure/sweep_cutters.h"
+#include "stock/rays/surface_dexels.h"
 #include "stock/sweep/sweep.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::measure {
 
@@ -52,12 +55,19 @@ class PassHeight {
   static constexpr double kHigh = 1e6;
 
  private:
-  double height(const Vec3& point, const Vec3& normal, uint32_t sweep) const;
+  /// Of the owner and those beside it, which are asked at every place.
+  struct KnownMap {
+    uint32_t sweep = stock::kUncut;
+    stock::SweepMap map;
+  };
+  double height(const Vec3& point, const Vec3& normal, uint32_t sweep);
+  const stock::SweepMap& map_of(uint32_t sweep);
 
   std::span<const stock::Sweep> sweeps_;
   const PassRule& rule_;
   const SweepCutters& cutters_;
   uint32_t first_, owner_;
+  std::array<KnownMap, 4> known_;  ///< by the last bits of the sweep's number
 };
 
 }  // namespace swarf::measure

@@ -31,7 +31,7 @@ Lowest lowest_of_all(const Context& context, const stock::Foot& foot, double hei
   Lowest lowest{height_mm, stock::kUncut};
   const Vec3 top = foot.point + height_mm * foot.normal, bottom = foot.point - stock::kSkin * foot.normal;
   std::vector<uint32_t> found;
-  context.index.find_below(top, foot.normal, {top.cwiseMin(bottom), top.cwiseMax(bottom)}, found);
+  context.index.find_below({top, foot.normal}, {top.cwiseMin(bottom), top.cwiseMax(bottom)}, found);
   for (const uint32_t n : found) {
     const stock::Sweep& sweep = context.sweeps[n];
     const stock::CutterSolid& cutter = context.cutters[n];

@@ -96,12 +96,13 @@ SweepIndex::Planes SweepIndex::planes_of(const SweepCutters& cutters, size_t beg
   return planes;
 }
 
-/// axis' . (x - tip') <= axis . (x - tip) + |axis' - axis| |x - tip'| + axis . (tip - tip').
-bool SweepIndex::Planes::keep_above(const Vec3& top, const Vec3& normal) const {
+/// axis' . (x - tip') <= axis . (x - tip) + |axis' - axis| |x - tip'| + axis . (tip - tip'), and no more than
+/// |x' - x| is added at another top.
+bool SweepIndex::Planes::keep_above(const Columns& columns) const {
   constexpr double kRounding = 1e-9;  // mm
-  const Vec3 offset = top - tip;
-  return axis.dot(normal) >= axis_spread &&
-         axis.dot(offset) + axis_spread * (offset.norm() + tip_spread) + kRounding < low;
+  const Vec3 offset = columns.top - tip;
+  return axis.dot(columns.normal) - columns.normal_spread >= axis_spread &&
+         axis.dot(offset) + columns.top_spread + axis_spread * (offset.norm() + tip_spread) + kRounding < low;
 }
 
 void SweepIndex::build(size_t node, size_t begin, size_t end) {
@@ -145,11 +146,10 @@ void SweepIndex::find(const Box& box, std::vector<uint32_t>& found) const {
       box, [](size_t, size_t) { return false; }, found);
 }
 
-void SweepIndex::find_below(const Vec3& top, const Vec3& normal, const Box& box,
-                            std::vector<uint32_t>& found) const {
+void SweepIndex::find_below(const Columns& columns, const Box& box, std::vector<uint32_t>& found) const {
   const auto skips = [&](size_t begin, size_t end) {
-    if (end - begin == kLongGroup) return long_groups_[begin / kLongGroup].keep_above(top, normal);
-    if (end - begin == kShortGroup) return short_groups_[begin / kShortGroup].keep_above(top, normal);
+    if (end - begin == kLongGroup) return long_groups_[begin / kLongGroup].keep_above(columns);
+    if (end - begin == kShortGroup) return short_groups_[begin / kShortGroup].keep_above(columns);
     return false;
   };
   visit(box, skips, found);

@@ -11,6 +11,12 @@
 
 namespace swarf::measure {
 
+/// Half lines down from their tops, side by side: one of them, and how far the others stray from it.
+struct Columns {
+  Vec3 top, normal;                              ///< W, mm; unit, upwards
+  double top_spread = 0.0, normal_spread = 0.0;  ///< mm; |normal' - normal|
+};
+
 /// Neighbours along the path lie near each other, so the tree halves the sweeps in their order. Borrows the
 /// sweeps; sweeps[n].block is n.
 class SweepIndex {
@@ -19,9 +25,9 @@ class SweepIndex {
 
   /// Appends the sweeps whose box meets `box`, in rising order. None that touches it is left out.
   void find(const Box& box, std::vector<uint32_t>& found) const;
-  /// As find(box), for what may cut a column along `normal` below its point `top`: most of those whose lowest
-  /// plane stays above it are left out, where the column leaves on the tool's side.
-  void find_below(const Vec3& top, const Vec3& normal, const Box& box, std::vector<uint32_t>& found) const;
+  /// As find(box), for what may cut one of the columns below its top: most of those whose lowest plane stays
+  /// above all the tops are left out, where the columns leave on the tool's side.
+  void find_below(const Columns& columns, const Box& box, std::vector<uint32_t>& found) const;
 
  private:
   static constexpr size_t kLeafSweeps = 4, kLongGroup = 64, kShortGroup = 8;
@@ -30,8 +36,8 @@ class SweepIndex {
     Vec3 axis, tip;
     double axis_spread = 0.0, tip_spread = 0.0;  ///< |axis' - axis|; mm
     double low = 0.0;                            ///< of a plane over the tip, along the axis, mm
-    /// All of them keep above a point on a column that leaves on the tool's side.
-    bool keep_above(const Vec3& top, const Vec3& normal) const;
+    /// All of them keep above the tops of columns that leave on the tool's side.
+    bool keep_above(const Columns& columns) const;
   };
   void build(size_t node, size_t begin, size_t end);
   Planes planes_of(const SweepCutters& cutters, size_t begin, size_t end) const;

@@ -9,17 +9,17 @@
 #include <utility>
 
 #include "base/side_by_side.h"
-#include "base/units.h"
 #include "cutter/profile.h"
 #include "motion/interpolator.h"
 #include "sim/job/design_place.h"
 #include "sim/job/driven_part.h"
 #include "sim/judge/findings.h"
-#include "sim/run/design_rays.h"
+#include "sim/run/cycle_sweeps.h"
 #include "sim/run/highest_place.h"
 #include "sim/run/missing_material.h"
 #include "sim/run/prove_part.h"
 #include "sim/run/ray_cutters.h"
+#include "sim/run/ray_stage.h"
 #include "sim/run/recorder.h"
 #include "sim/run/shot_places.h"
 #include "sim/run/starting_clamping.h"
@@ -31,80 +31,6 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double theory_scallop_um(const toolpath::ToolPath& path) {
-  double highest = 0.0;
-  for (size_t i = 0; i < path.elements.size(); ++i) {
-    if (const auto* pass = path.elements.pass(i)) highest = std::max(highest, pass->scallop_theory_mm);
-  }
-  return um_from_mm(highest);
-}
-
-/// Each surface of the design.
-std::vector<measure::SurfaceMetrics> measured_parts(const Job& job, MeasuredPath& measured) {
-  std::vector<measure::SurfaceMetrics> parts;
-  if (measured.dexels.empty()) return parts;
-  const RayCutters rays = ray_cutters(job, measured);
-  const measure::MeasureLimits limits{job.scene.accept.scallop_band_um() * kMicrometre,
-                                      job.scene.accept.gouge_band_um() * kMicrometre};
-  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
-  std::vector<stock::RayFieldPtr> fields;
-  for (const stock::SurfaceDexels& dexels : measured.dexels) fields.push_back(dexels.field_ptr());
-  const stock::FreeRange ranges(fields);
-  const stock::RawShape raw = job.scene.stock.body_W();
-  const measure::RayMaterial material{raw, ranges};
-  for (const stock::SurfaceDexels& dexels : measured.dexels)
-    parts.push_back(measure::measure_surface(dexels, measured.rays.sweeps, rays.passes, cutters, limits,
-                                             &measured.ridges, &material));
-  return parts;
-}
-
-void measure_dexels(const Job& job, MeasuredPath& measured) {
-  measured.surface = measure::combine(measured_parts(job, measured), measured.ridges);
-  measured.surface.scallop_theory_um = theory_scallop_um(measured.path);
-}
-
-/// Of making and cutting the measuring rays, which for a mesh of a million facets take half a minute.
-constexpr int kRaySteps = 5;
-
-/// Makes the rays and cuts a share of their tiles. `step`: called after each of kRaySteps but the last.
-void cut_ray_share(const Job& job, MeasuredPath& measured, Share share, const std::function<void()>& step) {
-  if (job.has_design()) measured.rays = all_ray_sweeps(job, *measured.cycles, *measured.carried);
-  step();
-  measured.dexels = design_dexels(job, step);
-  const RayCutters rays = ray_cutters(job, measured);
-  const auto tool_of = [&](uint32_t block) { return rays.solid_of[block]; };
-  for (stock::SurfaceDexels& dexels : measured.dexels) {
-    for_each_tool(measured.rays.sweeps, tool_of, [&](size_t tool, std::span<const stock::Sweep> part) {
-      dexels.cut(part, rays.solids[tool], share);
-    });
-  }
-  step();
-}
-
-void take_rays(Ranks& ranks, int rank, std::vector<stock::SurfaceDexels>& dexels) {
-  const std::vector<Bytes> told = rays_of(ranks, rank);
-  bool same = told.size() == dexels.size();
-  for (size_t i = 0; same && i < dexels.size(); ++i)
-    same = dexels[i].take_tiles(told[i], {rank, ranks.size()});
-  if (!same)
-    throw InputError("rank-differs", {fmt::format("rank {}", rank)}, "this rank measures another design",
-                     "give every machine the same program, version and files");
-}
-
-/// `ranks`: that share the tiles of the rays; null: none do.
-void cut_dexels(const Job& job, MeasuredPath& measured, Progress& progress, Ranks* ranks = nullptr) {
-  const auto start = std::chrono::steady_clock::now();
-  if (ranks != nullptr) ask_for_rays(*ranks);
-  progress.begin("cut measuring rays", kRaySteps, "steps");
-  cut_ray_share(job, measured, ranks != nullptr ? share_of(*ranks) : Share{},
-                [&, done = 0]() mutable { progress.advance(++done); });
-  for (int rank = 1; ranks != nullptr && rank < ranks->size(); ++rank)
-    take_rays(*ranks, rank, measured.dexels);
-  for (stock::SurfaceDexels& dexels : measured.dexels) dexels.limit_depths();
-  progress.end();
-  measured.dexel_seconds = seconds_since(start);
 }
 
 /// The tables that the options ask for.
@@ -135,16 +61,27 @@ void prepare_cycles(const Job& job, const motion::MotionOptions& options, Measur
                                                      job.scene.tools.front(), options);
 }
 
-/// `whole`: contacts of links, fixtures and tools, and what each tool does, too.
+/// What is made of the cycles while they pass.
+enum class Beside {
+  kNothing,
+  kSweeps,  ///< what cuts the measuring rays, where it is one sweep for each cycle
+  kWhole    ///< contacts of links, fixtures and tools, and what each tool does
+};
+
 void interpolate(const Job& job, const motion::MotionOptions& options, const CutOptions& output,
-                 Progress& progress, MeasuredPath& measured, bool whole = false) {
+                 Progress& progress, MeasuredPath& measured, Beside beside = Beside::kNothing) {
   const auto start = std::chrono::steady_clock::now();
   prepare_cycles(job, options, measured);
   Tables tables(job, *measured.cycles, output);
   std::optional<MachineContactCheck> contacts;
-  if (whole) contacts.emplace(job);
   std::optional<OperationMeter> operations;
-  if (whole) operations.emplace(job, *measured.cycles);
+  if (beside == Beside::kWhole) {
+    contacts.emplace(job);
+    operations.emplace(job, *measured.cycles);
+  }
+  std::optional<CycleSweeps> sweeps;
+  if (beside == Beside::kSweeps && one_sweep_each_cycle(job))
+    sweeps.emplace(measured.cycles->machines().front());
   if (output.outputs.page && !output.save_folder.empty()) measured.keys.emplace(job.machine.model.axes);
   measured.envelope = {job.machine.model.axes.size(), options.period_s};
   measured.motion =
@@ -153,11 +90,13 @@ void interpolate(const Job& job, const motion::MotionOptions& options, const Cut
         if (measured.keys) measured.keys->add(window);
         if (contacts) contacts->add(window);
         if (operations) operations->add(window);
+        if (sweeps) sweeps->add(window);
         tables.add(window);
       });
   if (measured.keys) measured.keys->finish();
   if (contacts) measured.contacts = contacts->finish();
   if (operations) measured.operations = operations->operations();
+  if (sweeps) measured.rays = sweeps->take();
   tables.finish();
   measured.motion_seconds = seconds_since(start);
 }
@@ -170,7 +109,7 @@ MeasuredPath plan_and_move(const Job& job, toolpath::Planner planner, const Carr
   Diagnostics diagnostics;
   measured.path = path_by(job, planner, diagnostics);
   measured.plan_seconds = seconds_since(start);
-  interpolate(job, job.scene.motion, {}, progress, measured);
+  interpolate(job, job.scene.motion, {}, progress, measured, Beside::kSweeps);
   return measured;
 }
 
@@ -302,7 +241,7 @@ void compare_planners(const Job& job, Progress& progress, Result& result) {
     if (!job.scene.compare_planners) return {};
     Progress silent;
     MeasuredPath other = plan_and_move(job, planners[n], result.main.carried, silent);
-    cut_dexels(job, other, silent);
+    cut_dexels(job, other, silent, nullptr, &result.main);
     measure_dexels(job, other);
     return row_of(name, other, false);
   });
@@ -335,8 +274,8 @@ void compare_modes(const Job& job, Progress& progress, Result& result) {
     other.path = result.main.path;
     other.carried = result.main.carried;
     Progress silent;
-    interpolate(job, options, {}, silent, other);
-    cut_dexels(job, other, silent);
+    interpolate(job, options, {}, silent, other, Beside::kSweeps);
+    cut_dexels(job, other, silent, nullptr, &result.main);
     measure_dexels(job, other);
     return row_of(one.name, other, false);
   });
@@ -423,7 +362,7 @@ void compare_driven(const Job& job, Progress& progress, Result& result) {
       other.path = driven_path(job, tolerance, told);
       other.carried = result.main.carried;
       interpolate(job, job.scene.motion, {}, silent, other);
-      cut_dexels(job, other, silent);
+      cut_dexels(job, other, silent, nullptr, &result.main);
       measure_dexels(job, other);
     }
     DrivenRow row = driven_row(job, exact, tolerance == used ? result.main : other);
@@ -499,7 +438,7 @@ MeasuredPath moved_tool(const Job& job, Progress& progress, const CutOptions& op
     require_still_shots(job.scene.stills, job.scene.stock.box_W,
                         job.design_mesh != nullptr || !job.design.empty());
   }
-  interpolate(job, job.scene.motion, options, progress, measured, run);
+  interpolate(job, job.scene.motion, options, progress, measured, run ? Beside::kWhole : Beside::kNothing);
   if (movie && !measured.cycles->stopped()) require_shots(job.scene.movie, *measured.cycles);
   // Of blocks nobody knows the contact points before they cut.
   if (!measured.path.elements.hold_blocks() && !measured.cycles->stopped())

@@ -14,14 +14,12 @@ std::vector<stock::RayFieldPtr> design_rays(const Job& job) {
   return fields;
 }
 
-std::vector<stock::SurfaceDexels> design_dexels(const Job& job, const std::function<void()>& step) {
-  const std::vector<stock::RayFieldPtr> fields = design_rays(job);
-  step();
+std::vector<stock::SurfaceDexels> design_dexels(const Job& job,
+                                                const std::vector<stock::RayFieldPtr>& fields) {
   std::vector<stock::SurfaceDexels> dexels;
   for (size_t i = 0; i < fields.size(); ++i) {
     dexels.emplace_back(fields[i], job.scene.stock.body_W(), stock::free_ranges(fields, i));
   }
-  step();
   return dexels;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cutter/profile.h"
 #include "sim/run/cut_sweeps.h"
+#include "sim/run/cycle_sweeps.h"
 #include "sim/run/driven_sweeps.h"
 
 namespace swarf::sim {
@@ -142,25 +143,10 @@ size_t cycle_of(const SweepSource& source, motion::CycleReader& reader) {
 }
 
 std::vector<stock::Sweep> cycle_sweeps(const motion::Cycles& cycles) {
-  const size_t count = cycles.size();
-  std::vector<stock::Sweep> sweeps(count);
-  if (count == 0) return sweeps;
-  // The nodes lie half way between the cycles, where the joint-linear motion of the axes strays most from
-  // the path.
+  CycleSweeps all(cycles.machines().front());
   motion::CycleReader reader(cycles);
-  motion::Cycle now = reader.at(0);
-  ToolPose node = now.sample.pose;
-  for (size_t i = 0; i < count; ++i) {
-    ToolPose next = now.sample.pose;
-    if (i + 1 < count) {
-      const motion::Cycle& after = reader.at(i + 1);
-      next = kinematics::forward(cycles.machines().front(), 0.5 * (now.q + after.q));
-      now = after;
-    }
-    sweeps[i] = {node, next, static_cast<uint32_t>(i)};
-    node = next;
-  }
-  return sweeps;
+  for (size_t k = 0; k < cycles.size(); ++k) all.add({&reader.at(k), 1});
+  return all.take().sweeps;
 }
 
 stock::MergedSweeps merged_sweeps(std::span<const ToolPose> poses, const Scene& scene, double tolerance_mm) {

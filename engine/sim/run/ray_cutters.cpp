@@ -1,13 +1,18 @@
 #include "sim/run/ray_cutters.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/run/result.h"
 
 namespace swarf::sim {
 
 JobSweeps all_ray_sweeps(const Job& job, const motion::Cycles& cycles, const CarriedCuts& carried) {
-  JobSweeps all = ray_sweeps(job, cycles);
+  return with_carried(ray_sweeps(job, cycles), carried);
+}
+
+JobSweeps with_carried(JobSweeps own, const CarriedCuts& carried) {
+  JobSweeps all = std::move(own);
   for (stock::Sweep sweep : carried.rays.sweeps) {
     sweep.block = static_cast<uint32_t>(all.sweeps.size());
     all.sweeps.push_back(sweep);

@@ -13,6 +13,8 @@ struct MeasuredPath;
 /// Of ray_sweeps() and then those of earlier set-ups; Sweep::block is the index, `sources` are of the own
 /// ones alone.
 JobSweeps all_ray_sweeps(const Job& job, const motion::Cycles& cycles, const CarriedCuts& carried);
+/// The same from the job's own ones.
+JobSweeps with_carried(JobSweeps own, const CarriedCuts& carried);
 
 /// Cutters and passes of such sweeps, by Sweep::block.
 struct RayCutters {

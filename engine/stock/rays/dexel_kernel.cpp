@@ -66,19 +66,36 @@ SWARF_KERNEL_INLINE void tile_heights(const TileRays& rays, const SweepMap& map,
 }
 
 /// Without the division: s <= top exactly where -z <= top * steepness, and the slack covers both roundings.
-SWARF_KERNEL_INLINE bool plane_reaches(const TileRays& rays, const SweepMap& map, const double* tops) {
-  const PoseRows start = pose_rows(map.R0t, map.tip0), end = pose_rows(map.R1t, map.tip1);
-  const auto below = [&](const PoseRows& p, int n, double top) {
-    const double z = p.zx * (rays.px[n] - p.tx) + p.zy * (rays.py[n] - p.ty) + p.zz * (rays.pz[n] - p.tz);
-    const double steepness = p.zx * rays.nx[n] + p.zy * rays.ny[n] + p.zz * rays.nz[n];
-    return (steepness <= kFlattest) | (-z <= top * steepness);
-  };
+SWARF_KERNEL_INLINE bool pose_reaches(const TileRays& rays, const Mat3& Rt, const Vec3& tip,
+                                      const double* tops) {
+  const double zx = Rt(2, 0), zy = Rt(2, 1), zz = Rt(2, 2), tx = tip.x(), ty = tip.y(), tz = tip.z();
   int reached = 0;
   for (int n = 0; n < kTileRays; ++n) {
     const double top = tops[n] + 2.0 * kBoundSlack;
-    reached |= below(start, n, top) | below(end, n, top);
+    const double z = zx * (rays.px[n] - tx) + zy * (rays.py[n] - ty) + zz * (rays.pz[n] - tz);
+    const double steepness = zx * rays.nx[n] + zy * rays.ny[n] + zz * rays.nz[n];
+    reached |= (steepness <= kFlattest) | (-z <= top * steepness);
   }
   return reached != 0;
+}
+
+SWARF_KERNEL_INLINE bool begins_where_ends(const SweepMap& next, const SweepMap& before) {
+  return next.tip0 == before.tip1 && next.R0t.row(2) == before.R1t.row(2);
+}
+
+SWARF_KERNEL_INLINE uint32_t planes_reach(const TileRays& rays, std::span<const SweepMap> maps,
+                                          const double* tops) {
+  uint32_t reached = 0;
+  bool known = false, at_end = false;  // of the sweep before
+  for (size_t k = 0; k < maps.size(); ++k) {
+    const SweepMap& map = maps[k];
+    const bool same = known && begins_where_ends(map, maps[k - 1]);
+    const bool at_start = same ? at_end : pose_reaches(rays, map.R0t, map.tip0, tops);
+    known = !at_start;
+    if (known) at_end = pose_reaches(rays, map.R1t, map.tip1, tops);
+    reached |= static_cast<uint32_t>(at_start || at_end) << k;
+  }
+  return reached;
 }
 
 SWARF_KERNEL_INLINE Lowering cut_by_disc(const TileRays& rays, const SweepMap& map, double radius,
@@ -104,16 +121,18 @@ SWARF_KERNEL_INLINE Lowering cut_by_disc(const TileRays& rays, const SweepMap& m
   return {changed != 0, left != 0};
 }
 
-bool plane_reaches_baseline(const TileRays& rays, const SweepMap& map, const double* tops) {
-  return plane_reaches(rays, map, tops);
+uint32_t planes_reach_baseline(const TileRays& rays, std::span<const SweepMap> maps, const double* tops) {
+  return planes_reach(rays, maps, tops);
 }
 
-SWARF_X86_64_V3 bool plane_reaches_v3(const TileRays& rays, const SweepMap& map, const double* tops) {
-  return plane_reaches(rays, map, tops);
+SWARF_X86_64_V3 uint32_t planes_reach_v3(const TileRays& rays, std::span<const SweepMap> maps,
+                                         const double* tops) {
+  return planes_reach(rays, maps, tops);
 }
 
-SWARF_X86_64_V4 bool plane_reaches_v4(const TileRays& rays, const SweepMap& map, const double* tops) {
-  return plane_reaches(rays, map, tops);
+SWARF_X86_64_V4 uint32_t planes_reach_v4(const TileRays& rays, std::span<const SweepMap> maps,
+                                         const double* tops) {
+  return planes_reach(rays, maps, tops);
 }
 
 Lowering cut_by_disc_baseline(const TileRays& rays, const SweepMap& map, double radius, double block,
@@ -149,9 +168,9 @@ SWARF_X86_64_V4 void tile_heights_v4(const TileRays& rays, const SweepMap& map, 
 
 std::span<const DexelKernelVariant> dexel_kernel_variants() {
   static const std::vector<DexelKernelVariant> variants = runnable<DexelKernelVariant>(
-      {"x86-64-v4", tile_heights_v4, plane_reaches_v4, cut_by_disc_v4},
-      {"x86-64-v3", tile_heights_v3, plane_reaches_v3, cut_by_disc_v3},
-      {"baseline", tile_heights_baseline, plane_reaches_baseline, cut_by_disc_baseline});
+      {"x86-64-v4", tile_heights_v4, planes_reach_v4, cut_by_disc_v4},
+      {"x86-64-v3", tile_heights_v3, planes_reach_v3, cut_by_disc_v3},
+      {"baseline", tile_heights_baseline, planes_reach_baseline, cut_by_disc_baseline});
   return variants;
 }
 

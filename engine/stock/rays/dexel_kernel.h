@@ -6,6 +6,7 @@
 // both ends the bound is the answer. All other rays that the bound does not rule out are left to ray_height.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "stock/sweep/sweep_map.h"
@@ -43,9 +44,10 @@ struct Lowering {
 
 using DexelKernel = void (*)(const TileRays& rays, const SweepMap& map, double radius, TileHeights& out);
 
-/// False when the bottom plane passes above `tops` (mm, greatest height with material) on every ray: at a
-/// third of the kernel's cost, which then finds no bound below them.
-using PlaneTest = bool (*)(const TileRays& rays, const SweepMap& map, const double* tops);
+/// Which sweeps' bottom planes do not pass above `tops` (mm, greatest height with material) on every ray: bit
+/// k for maps[k], 32 at the most. At a third of the kernel's cost, which finds no bound below the tops for
+/// the others; a pose at which one sweep ends and the next begins is looked at once.
+using PlaneTest = uint32_t (*)(const TileRays& rays, std::span<const SweepMap> maps, const double* tops);
 
 /// Lowers each ray that the disc itself meets at both ends to the height where it does, in one loop; of two
 /// sweeps of one height the smaller block stays. For tiles without material above gaps, whose material the
@@ -56,7 +58,7 @@ using DiscCut = Lowering (*)(const TileRays& rays, const SweepMap& map, double r
 struct DexelKernelVariant {
   const char* instruction_set;
   DexelKernel kernel;
-  PlaneTest plane_reaches;
+  PlaneTest planes_reach;
   DiscCut cut_by_disc;
 };
 /// The variants this processor can run, fastest first; all give the same bits.

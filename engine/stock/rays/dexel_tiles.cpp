@@ -12,7 +12,8 @@
 namespace swarf::stock {
 namespace {
 
-constexpr size_t kRunsPerStretch = 32, kSweepsPerRun = 32, kSweepsPerGroup = 8;
+constexpr size_t kSweepsPerGroup = 8, kGroupsPerRun = 4, kRunsPerLeg = 8, kLegsPerStretch = 4;
+constexpr size_t kSweepsPerRun = kGroupsPerRun * kSweepsPerGroup, kSweepsPerLeg = kRunsPerLeg * kSweepsPerRun;
 constexpr size_t kMapsPerTask = 1024;
 
 /// A tile's rays and their material by component; places beyond the tile's last ray repeat it and are not
@@ -57,42 +58,112 @@ class TileCut {
            (extent_above_.empty() || run_misses(run, ball_above_, chain_.cutter));
   }
 
-  /// Calls visit(n) for the runs of the stretches that may meet the tile.
-  template <typename Visit>
-  void each_run(const Visit& visit) const {
-    for (size_t k = 0; k < chain_.stretches.size(); ++k) {
-      if (misses(chain_.stretches[k])) continue;
-      const size_t end = std::min((k + 1) * kRunsPerStretch, chain_.runs.size());
-      for (size_t n = k * kRunsPerStretch; n < end; ++n) visit(n);
-    }
-  }
-
-  void cut_by(const SweepRun& run) {
-    for (size_t g = run.begin / kSweepsPerGroup; g * kSweepsPerGroup < run.end; ++g) {
-      const SweepRun& group = chain_.groups[g];
-      if (misses(group)) continue;
-      for (size_t n = group.begin; n < group.end; ++n) cut_by(n);
-    }
-  }
-
-  /// The run whose tip passes nearest to the tile's middle, among those that may meet it; runs.size() when
-  /// none.
-  size_t nearest_run() const {
-    const Vec3 middle = tile_.origin + tile_.frame.transpose() * (0.5 * (tile_.low + tile_.high));
-    size_t nearest = chain_.runs.size();
-    double least = std::numeric_limits<double>::infinity();
-    each_run([&](size_t n) {
-      const double distance2 = (chain_.runs[n].tip - middle).squaredNorm();
-      if (distance2 >= least || misses(chain_.runs[n])) return;
-      least = distance2;
-      nearest = n;
-    });
-    return nearest;
+  /// The nearest run first: it brings the heights down, and the bounds then rule out nearly all the others.
+  void cut() {
+    const size_t first = nearest_run();
+    if (first == chain_.runs.size()) return;
+    std::vector<NearGroup> near;
+    add_groups(first, near);
+    cut_by(near);
+    near.clear();
+    const auto skips = [&](const SweepRun& part) { return misses(part); };
+    for (size_t k = 0; k < chain_.stretches.size(); ++k)
+      each_run(k, skips, [&](size_t n) {
+        if (n != first) add_groups(n, near);
+      });
+    cut_by(near);
   }
 
   uint64_t pairs() const { return pairs_; }
 
  private:
+  struct NearGroup {
+    double distance2;  ///< of its tip from the tile's middle
+    size_t group;
+    bool operator<(const NearGroup& other) const {
+      return distance2 != other.distance2 ? distance2 < other.distance2 : group < other.group;
+    }
+  };
+
+  double distance2(const SweepRun& run) const { return (run.tip - middle_).squaredNorm(); }
+
+  /// Calls visit(n) for the runs of a stretch, without those in parts of it that `skips` tells.
+  template <typename Skips, typename Visit>
+  void each_run(size_t stretch, const Skips& skips, const Visit& visit) const {
+    if (skips(chain_.stretches[stretch])) return;
+    const size_t legs = std::min((stretch + 1) * kLegsPerStretch, chain_.legs.size());
+    for (size_t l = stretch * kLegsPerStretch; l < legs; ++l) {
+      if (skips(chain_.legs[l])) continue;
+      for (size_t n = l * kRunsPerLeg; n < std::min((l + 1) * kRunsPerLeg, chain_.runs.size()); ++n)
+        if (!skips(chain_.runs[n])) visit(n);
+    }
+  }
+
+  /// No tip of the part comes nearer to the tile's middle; mm.
+  double least_distance(const SweepRun& part) const {
+    return std::max(0.0, std::sqrt(distance2(part)) - part.tip_spread);
+  }
+
+  size_t nearest_stretch() const {
+    size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < chain_.stretches.size(); ++k) {
+      const double found = least_distance(chain_.stretches[k]);
+      if (found >= least) continue;
+      least = found;
+      nearest = k;
+    }
+    return nearest;
+  }
+
+  /// The run whose tip passes nearest to the tile's middle, among those that may meet it; runs.size() when
+  /// none.
+  size_t nearest_run() const {
+    size_t nearest = chain_.runs.size();
+    double least = std::numeric_limits<double>::infinity();
+    const auto skips = [&](const SweepRun& part) { return least_distance(part) > least || misses(part); };
+    const auto visit = [&](size_t n) {
+      const double distance = std::sqrt(distance2(chain_.runs[n]));
+      if (distance >= least) return;
+      least = distance;
+      nearest = n;
+    };
+    if (chain_.runs.empty()) return nearest;
+    const size_t first = nearest_stretch();
+    each_run(first, skips, visit);
+    for (size_t k = 0; k < chain_.stretches.size(); ++k)
+      if (k != first) each_run(k, skips, visit);
+    return nearest;
+  }
+
+  void add_groups(size_t run, std::vector<NearGroup>& near) const {
+    for (size_t g = run * kGroupsPerRun; g < std::min((run + 1) * kGroupsPerRun, chain_.groups.size()); ++g)
+      if (!misses(chain_.groups[g])) near.push_back({distance2(chain_.groups[g]), g});
+  }
+
+  /// The nearest group first.
+  void cut_by(std::vector<NearGroup>& near) {
+    std::sort(near.begin(), near.end());
+    for (const NearGroup& one : near) {
+      const SweepRun& group = chain_.groups[one.group];
+      if (!misses(group)) cut_by(group);
+    }
+  }
+
+  void cut_by(const SweepRun& group) {
+    const size_t count = group.end - group.begin;
+    uint32_t reaching = (1U << count) - 1;
+    const bool at_once = chain_.cylinder && above_.empty();
+    if (at_once) {
+      if (!loaded_) load();
+      pairs_ += kTileRays * count;
+      reaching = kernel_.planes_reach(w_.rays, std::span(chain_.maps).subspan(group.begin, count),
+                                      w_.standing.heights);
+    }
+    for (size_t k = 0; k < count; ++k)
+      if ((reaching >> k & 1U) != 0) cut_by(group.begin + k);
+  }
+
   size_t ray(uint32_t n) const { return material_.field.order[tile_.begin + std::min(n, tile_.count - 1)]; }
 
   void set_bounds(double highest) {
@@ -140,7 +211,7 @@ class TileCut {
     if (!above && !chain_.cylinder && pieces_above(tile_, map, cutter, highest_)) return;
     if (!loaded_) load();
     pairs_ += kTileRays;
-    if (!kernel_.plane_reaches(w_.rays, map, above_.empty() ? w_.standing.heights : w_.tops)) return;
+    if (kernel_.planes_reach(w_.rays, {&map, 1}, above_.empty() ? w_.standing.heights : w_.tops) == 0) return;
     if (!cut_rays(sweep, above)) return;
     double highest = w_.standing.heights[0];
     for (uint32_t n = 1; n < tile_.count; ++n) highest = std::max(highest, w_.standing.heights[n]);
@@ -222,6 +293,7 @@ class TileCut {
   std::vector<MaterialAbove>& above_;
   const SweepChain& chain_;
   const RayTile& tile_;
+  const Vec3 middle_ = tile_.origin + tile_.frame.transpose() * (0.5 * (tile_.low + tile_.high));
   double highest_ = 0.0;  ///< of what stands on the design
   Ball ball_{};           ///< around that, shrinks with the material
   Extent extent_above_;
@@ -248,7 +320,8 @@ SweepRun make_run(const SweepChain& chain, size_t begin, size_t end) {
 }  // namespace
 
 SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) {
-  SweepChain chain{sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, {}, {}, cutter.is_cylinder()};
+  SweepChain chain{
+      sweeps, cutter, std::vector<SweepMap>(sweeps.size()), {}, {}, {}, {}, cutter.is_cylinder()};
   parallel_chunks(sweeps.size(), kMapsPerTask, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) chain.maps[n] = sweep_map(sweeps[n]);
   });
@@ -256,7 +329,8 @@ SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) 
     for (size_t n = 0; n < sweeps.size(); n += length)
       runs.push_back(make_run(chain, n, std::min(n + length, sweeps.size())));
   };
-  divide(kRunsPerStretch * kSweepsPerRun, chain.stretches);
+  divide(kLegsPerStretch * kSweepsPerLeg, chain.stretches);
+  divide(kSweepsPerLeg, chain.legs);
   divide(kSweepsPerRun, chain.runs);
   divide(kSweepsPerGroup, chain.groups);
   return chain;
@@ -264,12 +338,7 @@ SweepChain make_chain(std::span<const Sweep> sweeps, const CutterSolid& cutter) 
 
 uint64_t cut_tile(const Material& material, size_t tile, const SweepChain& chain) {
   TileCut cut(material, tile, chain);
-  const size_t first = cut.nearest_run();
-  if (first == chain.runs.size()) return 0;
-  cut.cut_by(chain.runs[first]);
-  cut.each_run([&](size_t n) {
-    if (n != first && !cut.misses(chain.runs[n])) cut.cut_by(chain.runs[n]);
-  });
+  cut.cut();
   return cut.pairs();
 }
 

@@ -53,9 +53,12 @@ SweepMap sweep_map(const Sweep& sweep) {
 }
 
 double motion_bound(const SweepMap& map, double lever_mm) {
-  const Vec3 axis0 = map.R0t.row(2), axis1 = map.R1t.row(2);
-  const double theta = angle_between(axis0, axis1);
-  const double travel = (map.tip1 - map.tip0).norm();
+  return motion_bound(Sweep{{map.tip0, map.R0t.row(2)}, {map.tip1, map.R1t.row(2)}}, lever_mm);
+}
+
+double motion_bound(const Sweep& sweep, double lever_mm) {
+  const double theta = angle_between(sweep.start.axis_W, sweep.end.axis_W);
+  const double travel = (sweep.end.tip_W - sweep.start.tip_W).norm();
   return theta * (theta * lever_mm + 2.0 * travel) / 8.0;
 }
 

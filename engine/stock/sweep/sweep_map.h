@@ -27,8 +27,6 @@ SweepMap sweep_map(const Sweep& sweep);
 /// straight line, axis turning evenly) for points within `lever_mm` of the tip: |X''|/8 with X'' = theta^2
 /// lever + 2 theta |tip1 - tip0|.
 double motion_bound(const SweepMap& map, double lever_mm);
-inline double motion_bound(const Sweep& sweep, double lever_mm) {
-  return motion_bound(sweep_map(sweep), lever_mm);
-}
+double motion_bound(const Sweep& sweep, double lever_mm);
 
 }  // namespace swarf::stock

@@ -47,7 +47,7 @@ TEST(SweepIndex, LeavesOutNoneThatCutsBelowThePlace) {
     const Vec3 top = foot + height * normal;
     const Box box{top.cwiseMin(foot), top.cwiseMax(foot)};
     std::vector<uint32_t> below, near;
-    index.find_below(top, normal, box, below);
+    index.find_below({top, normal}, box, below);
     index.find(box, near);
     EXPECT_TRUE(std::is_sorted(below.begin(), below.end()));
     EXPECT_TRUE(std::includes(near.begin(), near.end(), below.begin(), below.end()));
@@ -64,6 +64,49 @@ TEST(SweepIndex, LeavesOutNoneThatCutsBelowThePlace) {
   EXPECT_GT(cutting, 500U);
   // .88 and .94, as compilers order the draws of one call.
   EXPECT_LT(100 * found, 97 * all);
+}
+
+/// Of columns side by side: what cuts any of them below its top.
+TEST(SweepIndex, LeavesOutNoneThatCutsOneOfSeveralColumns) {
+  Rng rng(739);
+  constexpr int kColumns = 6;
+  const stock::CutterSolid cutter(5.0, 20.0);
+  const std::vector<stock::Sweep> sweeps = wandering_path(rng, 2100);
+  const SweepIndex index(sweeps, cutter);
+  size_t cutting = 0, found = 0, all = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 middle(rng.uniform(-25.0, 25.0), rng.uniform(-25.0, 25.0), rng.uniform(-9.0, 0.0));
+    const Vec3 mean = (kTilted + rng.uniform(0.0, 0.4) * rng.direction()).normalized();
+    const double height = rng.uniform(0.0, 0.5);
+    std::vector<Vec3> feet, normals;
+    Columns columns{middle + height * mean, mean};
+    Box box{columns.top, columns.top};
+    for (int n = 0; n < kColumns; ++n) {
+      feet.push_back(middle + 0.5 * rng.direction());
+      normals.push_back((mean + 0.1 * rng.direction()).normalized());
+      const Vec3 top = feet.back() + height * normals.back();
+      columns.top_spread = std::max(columns.top_spread, (top - columns.top).norm());
+      columns.normal_spread = std::max(columns.normal_spread, (normals.back() - mean).norm());
+      box.lower = box.lower.cwiseMin(feet.back()).cwiseMin(top);
+      box.upper = box.upper.cwiseMax(feet.back()).cwiseMax(top);
+    }
+    std::vector<uint32_t> below, near;
+    index.find_below(columns, box, below);
+    index.find(box, near);
+    found += below.size();
+    all += near.size();
+    for (const stock::Sweep& sweep : sweeps) {
+      for (size_t n = 0; n < feet.size(); ++n) {
+        const double low = stock::ray_height(feet[n], normals[n], sweep, cutter);
+        if (low < 0.0 || low >= height) continue;
+        ++cutting;
+        ASSERT_TRUE(std::binary_search(below.begin(), below.end(), sweep.block))
+            << "foot " << stock::text(feet[n]) << " height " << height << " " << stock::text(sweep);
+      }
+    }
+  }
+  EXPECT_GT(cutting, 500U);
+  EXPECT_LT(found, all);
 }
 
 }  // namespace

@@ -101,13 +101,49 @@ TEST(DexelKernel, ThePlaneTestRulesOutNothingThatTheKernelReaches) {
     bool reached = false;
     for (int k = 0; k < kTileRays; ++k) reached |= heights.bound[k] <= tops[k] + kBoundSlack;
     for (const DexelKernelVariant& variant : dexel_kernel_variants()) {
-      const bool found = variant.plane_reaches(rays, map, tops);
+      const bool found = variant.planes_reach(rays, {&map, 1}, tops) != 0;
       ASSERT_TRUE(found || !reached) << variant.instruction_set << ", seed " << kSeed << " case " << n;
       ++(found ? kept : out);
     }
   }
   EXPECT_GT(out, 200);
   EXPECT_GT(kept, 200);
+}
+
+/// Poses that two sweeps share are looked at once: a row of sweeps is told what each is told alone.
+TEST(DexelKernel, ThePlaneTestOfARowTellsWhatEachOfItsSweepsTells) {
+  constexpr uint64_t kSeed = 33;
+  constexpr uint32_t kRow = 8;
+  Rng rng(kSeed);
+  int out = 0, kept = 0;
+  for (int n = 0; n < 2000; ++n) {
+    TileRays rays = random_rays(rng);
+    for (double& z : rays.nz) z = std::max(z, 0.05);
+    double tops[kTileRays];
+    const double top = rng.uniform(-6.0, 0.0);
+    std::fill(std::begin(tops), std::end(tops), top);
+    const auto pose = [&] {
+      return ToolPose{rng.direction(),
+                      (Vec3::UnitZ() + rng.uniform(0.0, 0.2) * rng.direction()).normalized()};
+    };
+    std::vector<SweepMap> row;
+    ToolPose before = pose();
+    for (uint32_t k = 0; k < kRow; ++k) {
+      if (rng.uniform(0.0, 1.0) < 0.2) before = pose();  // a gap in the path
+      const ToolPose next = pose();
+      row.push_back(sweep_map({before, next, k}));
+      before = next;
+    }
+    uint32_t one_by_one = 0;
+    for (uint32_t k = 0; k < kRow; ++k)
+      one_by_one |= dexel_kernel_variants().back().planes_reach(rays, {&row[k], 1}, tops) << k;
+    for (const DexelKernelVariant& variant : dexel_kernel_variants())
+      ASSERT_EQ(variant.planes_reach(rays, row, tops), one_by_one)
+          << variant.instruction_set << ", seed " << kSeed << " case " << n;
+    for (uint32_t k = 0; k < kRow; ++k) ++((one_by_one >> k & 1U) != 0 ? kept : out);
+  }
+  EXPECT_GT(out, 1000);
+  EXPECT_GT(kept, 1000);
 }
 
 /// The loop over a disc's rays against the kernel that tells their heights: what it lowers stands at the
