@@ -22,7 +22,7 @@ namespace swarf::reports {
 namespace {
 
 constexpr int kMapSamples = 16;
-constexpr double kMapNoise = 3.0;  // of 255: StillOptions::noise
+constexpr double kMapNoise = 5.0;  // of 255: StillOptions::noise
 
 /// What the colours do not say by themselves.
 std::vector<std::string> caption_of(const TriMesh& map, const std::string& title, double scale_um) {

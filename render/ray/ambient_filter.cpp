@@ -73,10 +73,11 @@ Shared Step::shared(int x, int y) const {
     for (int i = x - kReach * apart; i <= x + kReach * apart; i += apart) {
       if (i < 0 || i >= width) continue;
       const PixelLight& other = at(i, j);
-      if (!is_matt(other) && !other.knows_sheen) continue;
+      const bool gives_sheen = other.knows_sheen && own.dull > 0.0F;
+      if (!is_matt(other) && !gives_sheen) continue;
       const float weight = &other == &own ? kOwnWeight : likeness(own, other, tolerance_mm);
       if (is_matt(other)) ambient.add(other.ambient, weight);
-      if (other.knows_sheen) sheen.add(other.sheen, &other == &own ? kOwnSheenWeight : weight);
+      if (gives_sheen) sheen.add(other.sheen, &other == &own ? kOwnSheenWeight : weight);
     }
   }
   const bool knows_sheen = own.dull > 0.0F && !sheen.empty();

@@ -15,9 +15,10 @@ struct RayTree;
 struct StillOptions {
   int width = 1280, height = 720;
   int samples_per_pixel = 24;  ///< at most
-  /// A pixel is done as soon as the standard error of its mean brightness, as if its samples were
-  /// independent, is below this, of 255; they are a lattice, so that it is less in fact. 0: all samples
-  /// everywhere.
+  /// Each pixel takes as many samples as bring the standard error of its brightness below this, of 255, as if
+  /// they were independent; how far they spread is estimated from the first ones of the pixel and of those
+  /// around it. They are a lattice, so that the error is less in fact, except where an edge would take more
+  /// than `samples_per_pixel`. 0: all samples everywhere.
   double noise = 0.0;
   bool transparent = false;  ///< nothing behind the drawing, no floor and no shadow on it
   uint32_t seed = 1;         ///< same seed, same picture, for any number of threads

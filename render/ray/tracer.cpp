@@ -16,6 +16,11 @@ constexpr float kSecondMirror = 0.8F;
 /// Rougher surfaces mirror so blurred that neighbours share it: their lobes are 15 degrees wide and more.
 constexpr float kDullRoughness = 0.35F;
 
+/// Directions in which a polished surface looks at the surroundings, for one ray.
+constexpr int kMirrors = 4;
+/// Where fewer rays leave the drawing than this, what is known of the surroundings is hardly of use.
+constexpr float kLeastOpen = 0.25F;
+
 /// The shading normal, bent towards the viewer when interpolation turned it away.
 Vec3f facing_normal(const Hit& hit, const Vec3f& out) {
   constexpr float kGrazing = 1e-3F;
@@ -33,10 +38,10 @@ Tracer::Tracer(const RayScene& scene, const Studio& studio, const StillOptions& 
       floor_z_(scene.lowest_z()) {}
 
 Seen Tracer::look(const Vec3f& origin, const Vec3f& direction, const Vec3f& backdrop, bool with_shared,
-                  Sampler& sampler) const {
+                  Sampler& sampler, Openings& openings) const {
   Seen seen;
   if (const auto hit = scene_.nearest(origin, direction, true)) {
-    if (!hit->drawn) return solid(*hit, direction, with_shared, sampler);
+    if (!hit->drawn) return solid(*hit, direction, with_shared, sampler, openings);
     seen.light = drawn(*hit);
     return seen;
   }
@@ -77,7 +82,12 @@ bool Tracer::key_visible(const Hit& hit, const Vec3f& direction) const {
          !scene_.occluded(hit.position + scene_.offset() * hit.face_normal, direction);
 }
 
-Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sampler& sampler) const {
+/// The rays for what comes from all around carry only what the drawing changes in the surroundings' light,
+/// which is known: T - c S + c mean(S), where T is what the ray brings, S the surroundings in its direction.
+/// True for every c that does not depend on the ray; c as large as the share of rays that leave the drawing
+/// has the least noise, none in the open (control variates, Kalos and Whitlock 1986).
+Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sampler& sampler,
+                   Openings& openings) const {
   const Reflection reflection(hit);
   const Eigen::Matrix3f frame = frame_about(facing_normal(hit, -direction));
   const Vec3f out = frame.transpose() * -direction;
@@ -87,19 +97,28 @@ Seen Tracer::solid(const Hit& hit, const Vec3f& direction, bool with_shared, Sam
   seen.light = key_light(hit, reflection, frame, out, sampler);
   seen.dull = hit.roughness >= kDullRoughness;
   if (!seen.dull) {
-    seen.light += mirror_light(hit, reflection, frame, out, sampler);
+    seen.light += polish(hit, reflection, frame, out, sampler, openings.mirrored);
   } else if (with_shared) {
-    seen.sheen = mirror_light(hit, reflection, frame, out, sampler);
+    seen.sheen = mirror_light(hit, reflection, frame, out, sampler.next(), sampler).light;
   }
   const Eigen::Vector2f xi = sampler.next();
   if (reflection.diffuse.maxCoeff() > 0.0F) {
     seen.matt = reflection.diffuse;
-    if (!with_shared) return seen;
-    const Vec3f in = frame * sample_cosine(xi);
-    const Vec3f start = hit.position + scene_.offset() * hit.face_normal;
-    if (in.dot(hit.face_normal) > 0.0F) seen.ambient = second_hit(start, in, sampler);
+    if (with_shared)
+      seen.ambient = ambient(hit, frame.col(2), frame * sample_cosine(xi), sampler, openings.around);
   }
   return seen;
+}
+
+Vec3f Tracer::ambient(const Hit& hit, const Vec3f& normal, const Vec3f& in, Sampler& sampler,
+                      Openness& open) const {
+  const float share = open.share();
+  Arriving arriving;
+  if (in.dot(hit.face_normal) > 0.0F)
+    arriving = second_hit(hit.position + scene_.offset() * hit.face_normal, in, sampler);
+  open.add(arriving.left);
+  const float surplus = studio_.irradiance(normal) - studio_.surroundings(in);
+  return arriving.light + Vec3f::Constant(share * surplus);
 }
 
 /// Key light by a sample of its disc; the mirror part shares the work with mirror_light (balance heuristic).
@@ -114,32 +133,54 @@ Vec3f Tracer::key_light(const Hit& hit, const Reflection& reflection, const Eige
   return (studio_.key_radiance() / studio_.key_pdf()) * scatter;
 }
 
-Vec3f Tracer::mirror_light(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
-                           const Vec3f& out, Sampler& sampler) const {
-  const Vec3f in = reflection.sample_specular(out, sampler.next());
-  const Vec3f direction = frame * in;
-  if (in.z() <= 0.0F || direction.dot(hit.face_normal) <= 0.0F) return Vec3f::Zero();
-  const float pdf = reflection.specular_pdf(out, in);
-  const Vec3f weight = reflection.specular_times_cosine(out, in) / pdf;
-  Vec3f arriving = second_hit(hit.position + scene_.offset() * hit.face_normal, direction, sampler);
+Tracer::Arriving Tracer::mirror_light(const Hit& hit, const Reflection& reflection,
+                                      const Eigen::Matrix3f& frame, const Vec3f& out,
+                                      const Eigen::Vector2f& xi, Sampler& sampler) const {
+  const MirrorLobe lobe(reflection, out);
+  const Mirrored mirrored = lobe.sample(xi);
+  const Vec3f direction = frame * mirrored.in;
+  if (mirrored.in.z() <= 0.0F || direction.dot(hit.face_normal) <= 0.0F) return {};
+  Arriving arriving = second_hit(hit.position + scene_.offset() * hit.face_normal, direction, sampler);
   if (studio_.in_key(direction) && key_visible(hit, direction)) {
-    arriving += Vec3f::Constant(studio_.key_radiance() * pdf / (pdf + studio_.key_pdf()));
+    const float pdf = reflection.specular_pdf(out, mirrored.in);
+    arriving.light += Vec3f::Constant(studio_.key_radiance() * pdf / (pdf + studio_.key_pdf()));
   }
-  return weight.cwiseProduct(arriving);
+  arriving.light = mirrored.weight.cwiseProduct(arriving.light);
+  return arriving;
+}
+
+/// What polished surfaces mirror: the surroundings' part as the mean of several directions.
+Vec3f Tracer::polish(const Hit& hit, const Reflection& reflection, const Eigen::Matrix3f& frame,
+                     const Vec3f& out, Sampler& sampler, Openness& open) const {
+  const Eigen::Vector2f xi = sampler.next();
+  const float share = open.share();
+  const Arriving arriving = mirror_light(hit, reflection, frame, out, xi, sampler);
+  open.add(arriving.left);
+  if (share < kLeastOpen) return arriving.light;
+  const MirrorLobe lobe(reflection, out);
+  Vec3f surplus = Vec3f::Zero();
+  for (int k = 0; k < kMirrors; ++k) {
+    const Mirrored mirrored = lobe.sample(xi, k, kMirrors);
+    if (mirrored.in.z() <= 0.0F) continue;
+    const float weight = 1.0F / static_cast<float>(kMirrors) - (k == 0 ? 1.0F : 0.0F);
+    surplus += (weight * studio_.surroundings(frame * mirrored.in)) * mirrored.weight;
+  }
+  return arriving.light + share * surplus;
 }
 
 /// What a secondary ray brings: the surroundings, or a surface under the key light and an unshadowed sky.
-Vec3f Tracer::second_hit(const Vec3f& origin, const Vec3f& direction, Sampler& sampler) const {
+Tracer::Arriving Tracer::second_hit(const Vec3f& origin, const Vec3f& direction, Sampler& sampler) const {
   const auto hit = scene_.nearest(origin, direction, false);
-  if (!hit) return Vec3f::Constant(studio_.surroundings(direction));
+  if (!hit) return {Vec3f::Constant(studio_.surroundings(direction)), true};
   const Reflection reflection(*hit);
   const Vec3f to_key = studio_.sample_key(sampler.next());
   const float cosine = hit->normal.dot(to_key);
   const float key = cosine > 0.0F && key_visible(*hit, to_key) ? cosine * studio_.key_strength() : 0.0F;
   const float sky = studio_.mean_sky() * (0.5F + 0.5F * hit->normal.z());
   const Vec3f mirrored = direction - 2.0F * direction.dot(hit->normal) * hit->normal;
-  return (key + sky) * reflection.diffuse +
-         (kSecondMirror * studio_.surroundings(mirrored)) * reflection.specular;
+  const Vec3f light = (key + sky) * reflection.diffuse +
+                      (kSecondMirror * studio_.surroundings(mirrored)) * reflection.specular;
+  return {light, false};
 }
 
 }  // namespace swarf::render

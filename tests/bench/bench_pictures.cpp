@@ -119,7 +119,7 @@ void BM_Still(benchmark::State& state) {
   render::DrawList list;
   render::StillOptions options;
   options.samples_per_pixel = dome().job.scene.stills.samples;
-  options.noise = 3.0;
+  options.noise = 5.0;
   if (state.range(0) == 0) {
     list.items = view.items(frame.cycle.q, 0, &stock);
     list.camera = machine_camera(dome().run, "machine", kSize);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 
 #include "support/json_path.h"
@@ -254,10 +255,22 @@ TEST(Verdict, WithoutALimitOfGougesADesignThatTheStockCannotHoldFails) {
     EXPECT_EQ(std::count_if(judged.findings.begin(), judged.findings.end(), missing), 1)
         << judged.findings.dump(2);
   }
-  const Judged whole =
-      scene("whole.toml", "box_mm = [[-19, -19, -20], [19, 19, 0]]\n", "mesh = \"part.obj\"\n");
+  const std::string block = "box_mm = [[-19, -19, -20], [19, 19, 0]]\n", part = "mesh = \"part.obj\"\n";
+  const Judged whole = scene("whole.toml", block, part);
   EXPECT_EQ(whole.outcome("gouge"), "not_judged") << whole.run.output;
   EXPECT_EQ(whole.run.exit_code, 0) << whole.run.output;
+  // Cut .12 mm too deep: no limit is needed to know that this is not the part.
+  const std::string deeper = swarf::test::read_text(folder / "air.nc");
+  swarf::test::write_text(folder / "air.nc", std::regex_replace(deeper, std::regex("Z-3 "), "Z-3.12 "));
+  const Judged gouged = scene("gouged.toml", block, part);
+  EXPECT_EQ(gouged.run.exit_code, 1) << gouged.run.output;
+  EXPECT_EQ(gouged.outcome("gouge"), "fails");
+  const auto gouge = std::find_if(gouged.findings.begin(), gouged.findings.end(),
+                                  [](const json& one) { return one.at("code") == "gouge"; });
+  ASSERT_NE(gouge, gouged.findings.end()) << gouged.findings.dump(2);
+  EXPECT_NE(gouge->at("text").get<std::string>().find("a gouge, 120.000 um about"), std::string::npos)
+      << gouge->dump(2);
+  EXPECT_EQ(gouge->at("line"), 6) << gouge->dump(2);
 }
 
 /// A slot of 3 mm below a plane that is to be whole, as deep as three times the skin of a measuring ray: it

@@ -163,21 +163,23 @@ void region_faults(const Job& job, const RegionKind& kind, const Result& result,
   not_proven(job, result, collect);
 }
 
-/// Without a limit of gouges the one place that lacks most.
-void missing_fault(const Result& result, Collector& collect) {
+/// Without a limit of gouges the one place that lacks most, or is cut into most.
+void gouge_without_limit(const Result& result, const char* remedy, Collector& collect) {
   collect.begin("gouge");
   if (collect.check().outcome != Outcome::kFails) return;
   const measure::SurfaceMetrics& surface = result.main.surface;
+  const bool missing = *collect.check().value <= surface.missing_max_um;
   measure::Region region;
-  region.worst_um = surface.missing_max_um;
-  region.place = surface.missing_place;
+  region.worst_um = missing ? surface.missing_max_um : surface.gouge_max_um;
+  region.place = missing ? surface.missing_place : surface.gouge_bottom;
   at_region(
-      collect.at_block("stock-missing",
+      collect.at_block(missing ? "stock-missing" : "gouge",
                        fmt::format("{}, {:.3f} um about ({:.3f}, {:.3f}, {:.3f}) mm; more than the {:g} "
                                    "um that are allowed where [accept] has no limit",
-                                   kNobodyCut, region.worst_um, region.place.x(), region.place.y(),
-                                   region.place.z(), *collect.check().limit),
-                       kNobodyCutRemedy, result.main.rays.sources, stock::kUncut),
+                                   missing ? kNobodyCut : "a gouge", region.worst_um, region.place.x(),
+                                   region.place.y(), region.place.z(), *collect.check().limit),
+                       missing ? kNobodyCutRemedy : remedy, result.main.rays.sources,
+                       missing ? stock::kUncut : surface.gouge_block),
       region);
 }
 
@@ -201,7 +203,7 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                    worst(surface.gouge_max_um, surface.gouge_bottom, surface.gouge_block)},
                   result, collect);
   else
-    missing_fault(result, collect);
+    gouge_without_limit(result, remedy, collect);
   region_faults(
       job,
       {"excess", "material stands above the design", "machine this place too, or start from a smaller stock",

@@ -25,6 +25,8 @@ constexpr double kRoundTrip = 1e-9;
 /// Of what the stock lacks where [accept] has no limit of gouges, um: facets of stock and design that stand
 /// for one round face lie so near to each other (brep::kEdgeChord on both sides).
 constexpr double kMissingAllowed = 10.0;
+/// Of a gouge, likewise, um: no finish and no facets are so coarse, whatever limit somebody would have set.
+constexpr double kGougeAllowed = 100.0;
 
 Check not_judged(std::string name, std::string subject, std::string reason) {
   Check check{std::move(name), std::move(subject)};
@@ -80,9 +82,17 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
   return check;
 }
 
-/// A part that its stock cannot hold is never the finished one, whether or not anybody has set a limit.
-void judge_missing(const SurfaceMetrics& surface, Check& gouge) {
-  if (gouge.outcome != Outcome::kNotJudged || surface.missing_max_um <= kMissingAllowed) return;
+/// A part that its stock cannot hold is never the finished one, and neither is one that is cut into deeply,
+/// whether or not anybody has set a limit.
+void judge_without_limit(const SurfaceMetrics& surface, Check& gouge) {
+  if (gouge.outcome != Outcome::kNotJudged) return;
+  if (surface.missing_max_um <= kMissingAllowed) {
+    if (surface.gouge_max_um <= kGougeAllowed) return;
+    gouge.outcome = Outcome::kFails;
+    gouge.limit = kGougeAllowed;
+    gouge.reason = fmt::format("without a limit in [accept] {:g} um are allowed", kGougeAllowed);
+    return;
+  }
   gouge.outcome = Outcome::kFails;
   gouge.limit = kMissingAllowed;
   gouge.value = std::max(*gouge.value, surface.missing_max_um);
@@ -122,7 +132,7 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
                            result.stopped);
   if (deepest.outcome == Outcome::kFails && surface.gouge_block == stock::kUncut)
     deepest.reason = "the stock has no material there: nobody has cut it";
-  judge_missing(surface, deepest);
+  judge_without_limit(surface, deepest);
   checks.push_back(std::move(deepest));
   checks.push_back(measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
                             surface.excess_bound, result.stopped));

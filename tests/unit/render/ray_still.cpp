@@ -156,6 +156,94 @@ TEST(Still, SamplingStopsAtTheStatedNoise) {
   EXPECT_LT(std::sqrt(squares / (160 * 90)), options.noise);
 }
 
+/// Root mean square of what a picture is off one of very many samples with another seed, green, of 255.
+double noise_of(const DrawList& list, StillOptions options) {
+  options.samples_per_pixel = 16;
+  options.noise = 5.0;
+  const Image image = render_still(list, options);
+  options.samples_per_pixel = 512;
+  options.noise = 0.0;
+  options.seed = 9;
+  const Image truth = render_still(list, options);
+  double squares = 0.0;
+  for (size_t i = 1; i < image.rgba.size(); i += 4) {
+    const double off = double{1} * image.rgba[i] - truth.rgba[i];
+    squares += off * off;
+  }
+  return std::sqrt(4.0 * squares / static_cast<double>(image.rgba.size()));
+}
+
+TriMesh ball() {
+  constexpr int kSegments = 48;
+  std::vector<Vec2> profile;
+  for (int i = 0; i <= kSegments; ++i) {
+    const double angle = kPi * i / kSegments;
+    profile.emplace_back(i % kSegments == 0 ? 0.0 : 25.0 * std::sin(angle), -25.0 * std::cos(angle));
+  }
+  return revolved_profile(profile, 2 * kSegments);
+}
+
+/// Most of their noise is of the strip lights, which are known without rays.
+TEST(Still, PolishedSurfacesHaveLittleNoise) {
+  const TriMesh mesh = ball();
+  DrawList list;
+  list.camera = from_above();
+  list.items.push_back({&mesh, Pose::Identity(), {{0.56F, 0.57F, 0.59F}, 1.0F, 0.16F}, false});
+  EXPECT_LT(noise_of(list, small_picture()), 2.2);
+}
+
+/// A pixel's first samples may all miss a line through it.
+TEST(Still, LinesAreFoundByThePixelsBesideThem) {
+  const TriMesh mesh = plate(0);
+  DrawList list;
+  list.camera = from_above();
+  list.items.push_back({&mesh, Pose::Identity(), {{0.75F, 0.76F, 0.78F}, 0.0F, 0.6F}, false});
+  for (int k = 0; k < 12; ++k)
+    list.lines.push_back({{{-15, 3.0 * k - 16, 5}, {15, 3.0 * k - 14.5, 5}}, {0.02F, 0, 0}, 1.0F});
+  StillOptions options = small_picture();
+  options.strip_strength = 0.0;
+  EXPECT_LT(noise_of(list, options), 2.7);
+}
+
+/// A floor's pixel whose first samples see neither shadow nor drawing is no brighter than the others.
+TEST(Still, SamplesAreNotTakenFewerWhereTheFirstMeetNothing) {
+  const TriMesh post = cylinder_mesh(10, 30, 1);
+  DrawList list;
+  list.camera = from_above();
+  list.items.push_back({&post, Pose::Identity(), {}, false});
+  StillOptions options = small_picture();
+  const auto mean = [&](int samples, uint32_t seeds) {
+    options.samples_per_pixel = samples;
+    double sum = 0.0;
+    for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+      const Image image = render_still(list, options);
+      for (size_t i = 1; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+    }
+    return sum / (160.0 * 90.0 * seeds);
+  };
+  EXPECT_NEAR(mean(128, 1), mean(4, 16), 0.1);
+}
+
+TEST(Studio, IrradianceIsTheMeanOfTheSurroundings) {
+  const Studio studio{StillOptions{}};
+  Rng rng(5);
+  for (int round = 0; round < 40; ++round) {
+    Vec3f n = rng.direction().cast<float>();
+    if (round % 4 == 0) n.z() = 0.0F;
+    if (round % 8 == 0) n = round == 0 ? Vec3f::UnitZ() : round == 8 ? Vec3f(0, -1, 0) : Vec3f(1, 0, 0);
+    n.normalize();
+    const Eigen::Matrix3f frame = frame_about(n);
+    constexpr int kSamples = 40000;
+    double sum = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double turn = i * 0.6180339887498949;
+      sum += studio.surroundings(frame * sample_cosine({(static_cast<float>(i) + 0.5F) / kSamples,
+                                                        static_cast<float>(turn - std::floor(turn))}));
+    }
+    EXPECT_NEAR(studio.irradiance(n) / (sum / kSamples), 1.0, 0.025) << n.transpose();
+  }
+}
+
 TEST(Still, SilhouetteFallsWhereTheCameraPutsIt) {
   TriMesh mesh = plate(0);
   DrawList list;
@@ -282,9 +370,13 @@ TEST(Studio, SpecularSamplesFollowTheirDensityAndNeverGainEnergy) {
     double reflected = 0, by_density = 0;
     for (int i = 0; i < kSamples; ++i) {
       const Eigen::Vector2f xi(static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform()));
-      const Vec3f in = reflection.sample_specular(out, xi);
-      if (in.z() > 0)
-        reflected += reflection.specular_times_cosine(out, in).x() / reflection.specular_pdf(out, in);
+      const Mirrored mirrored = MirrorLobe(reflection, out).sample(xi);
+      const Vec3f& in = mirrored.in;
+      if (in.z() > 0) {
+        reflected += mirrored.weight.x();
+        const float ratio = reflection.specular_times_cosine(out, in).x() / reflection.specular_pdf(out, in);
+        ASSERT_NEAR(mirrored.weight.x(), ratio, 1e-3F * (1.0F + ratio));
+      }
       const Vec3f uniform = rng.direction().cast<float>();
       const Vec3f up(uniform.x(), uniform.y(), std::abs(uniform.z()));
       by_density += reflection.specular_times_cosine(out, up).x() * 2 * kPi;
