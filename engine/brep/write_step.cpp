@@ -93,8 +93,8 @@ class ShellBuilder {
 
 struct Body {
   TopoDS_Solid solid;
-  bool hollow =
-      false;  ///< it has cavities, which the library writes with edges only, in four times the bytes
+  /// It has cavities, which the library writes with edges only, in four times the bytes.
+  bool hollow = false;
 };
 
 /// Vertices stay as they are: where sheets touch, each has its own.

@@ -50,27 +50,23 @@ bool flip(WeldedMesh& mesh, uint32_t sliver, const Height& height, uint32_t neig
 
 }  // namespace
 
-size_t flip_slivers(WeldedMesh& mesh, double height_mm) {
-  size_t left = 0;
+void flip_slivers(WeldedMesh& mesh, double height_mm) {
   for (int round = 0; round < kRoundsMost; ++round) {
     const std::vector<uint32_t> across = facets_across(mesh.triangles);
-    std::vector<uint8_t> changed(mesh.triangles.size(),
-                                 0);  // their sides are no longer as `across` knows them
-    size_t flips = 0;
-    left = 0;
+    // Their sides are no longer as `across` knows them.
+    std::vector<uint8_t> changed(mesh.triangles.size(), 0);
+    bool flipped = false;
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       if (changed[i] != 0) continue;
       const Height height = height_of(mesh, mesh.triangles[i]);
       if (height.mm > height_mm) continue;
-      ++left;
       const uint32_t neighbour = across[3 * size_t{i} + height.side];
       if (neighbour == kNobody || changed[neighbour] != 0 || !flip(mesh, i, height, neighbour)) continue;
       changed[i] = changed[neighbour] = 1;
-      ++flips;
+      flipped = true;
     }
-    if (flips == 0) break;
+    if (!flipped) return;
   }
-  return left;
 }
 
 }  // namespace swarf::mesh

@@ -12,6 +12,7 @@
 #include "program/source_text.h"
 #include "sim/judge/judge.h"
 #include "sim/judge/limit_text.h"
+#include "sim/judge/unlimited_gouge.h"
 
 namespace swarf::sim {
 namespace {
@@ -168,7 +169,7 @@ void gouge_without_limit(const Result& result, const char* remedy, Collector& co
   collect.begin("gouge");
   if (collect.check().outcome != Outcome::kFails) return;
   const measure::SurfaceMetrics& surface = result.main.surface;
-  const bool missing = *collect.check().value <= surface.missing_max_um;
+  const bool missing = unlimited_gouge(surface) == UnlimitedGouge::kMissing;
   measure::Region region;
   region.worst_um = missing ? surface.missing_max_um : surface.gouge_max_um;
   region.place = missing ? surface.missing_place : surface.gouge_bottom;

@@ -11,6 +11,7 @@
 #include "cutter/cutter.h"
 #include "sim/job/tool_words.h"
 #include "sim/judge/limit_text.h"
+#include "sim/judge/unlimited_gouge.h"
 #include "sim/run/result.h"
 
 namespace swarf::sim {
@@ -22,11 +23,6 @@ constexpr const char* kMicrometres = "um";
 constexpr const char* kNoDesign = "no design";
 /// Forward kinematics of the inverse's solution must lead back to within this, mm.
 constexpr double kRoundTrip = 1e-9;
-/// Of what the stock lacks where [accept] has no limit of gouges, um: facets of stock and design that stand
-/// for one round face lie so near to each other (brep::kEdgeChord on both sides).
-constexpr double kMissingAllowed = 10.0;
-/// Of a gouge, likewise, um: no finish and no facets are so coarse, whatever limit somebody would have set.
-constexpr double kGougeAllowed = 100.0;
 
 Check not_judged(std::string name, std::string subject, std::string reason) {
   Check check{std::move(name), std::move(subject)};
@@ -86,21 +82,16 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
 /// whether or not anybody has set a limit.
 void judge_without_limit(const SurfaceMetrics& surface, Check& gouge) {
   if (gouge.outcome != Outcome::kNotJudged) return;
-  if (surface.missing_max_um <= kMissingAllowed) {
-    if (surface.gouge_max_um <= kGougeAllowed) return;
-    gouge.outcome = Outcome::kFails;
-    gouge.limit = kGougeAllowed;
-    gouge.reason = fmt::format("without a limit in [accept] {:g} um are allowed", kGougeAllowed);
-    return;
-  }
+  const UnlimitedGouge what = unlimited_gouge(surface);
+  if (what == UnlimitedGouge::kNone) return;
   gouge.outcome = Outcome::kFails;
-  gouge.limit = kMissingAllowed;
+  gouge.limit = what == UnlimitedGouge::kCut ? kGougeAllowed : kMissingAllowed;
+  gouge.reason = fmt::format("without a limit in [accept] {:g} um are allowed", *gouge.limit);
+  if (what == UnlimitedGouge::kCut) return;
   gouge.value = std::max(*gouge.value, surface.missing_max_um);
   gouge.what = fmt::format("{} {:.3f} um", gouge.subject, *gouge.value);
-  gouge.reason = fmt::format(
-      "the stock lacks {:.3f} um of material that nobody has cut; without a limit in "
-      "[accept] {:g} um are allowed",
-      surface.missing_max_um, kMissingAllowed);
+  gouge.reason = fmt::format("the stock lacks {:.3f} um of material that nobody has cut; {}",
+                             surface.missing_max_um, gouge.reason);
 }
 
 /// A mesh has faces that the stock brings along: there only excess tells what is missing. A program of blocks

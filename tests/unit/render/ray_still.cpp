@@ -135,6 +135,16 @@ TEST(Still, ATransparentOneHasNothingBehindTheDrawing) {
   EXPECT_EQ(image.rgba[middle], solid.rgba[middle]);
 }
 
+/// Root mean square of what one picture is off the other, green, of 255.
+double green_rms(const Image& image, const Image& truth) {
+  double squares = 0.0;
+  for (size_t i = 1; i < image.rgba.size(); i += 4) {
+    const double off = double{1} * image.rgba[i] - truth.rgba[i];
+    squares += off * off;
+  }
+  return std::sqrt(4.0 * squares / static_cast<double>(image.rgba.size()));
+}
+
 /// Against a picture of very many samples: what stops early is no farther off than it says, nearly
 /// everywhere.
 TEST(Still, SamplingStopsAtTheStatedNoise) {
@@ -148,12 +158,7 @@ TEST(Still, SamplingStopsAtTheStatedNoise) {
   options.samples_per_pixel = 256;
   options.noise = 3.0;
   const Image image = render_still(list, options);
-  double squares = 0.0;
-  for (size_t i = 1; i < image.rgba.size(); i += 4) {
-    const double off = double{1} * image.rgba[i] - truth.rgba[i];
-    squares += off * off;
-  }
-  EXPECT_LT(std::sqrt(squares / (160 * 90)), options.noise);
+  EXPECT_LT(green_rms(image, truth), options.noise);
 }
 
 /// Root mean square of what a picture is off one of very many samples with another seed, green, of 255.
@@ -165,12 +170,7 @@ double noise_of(const DrawList& list, StillOptions options) {
   options.noise = 0.0;
   options.seed = 9;
   const Image truth = render_still(list, options);
-  double squares = 0.0;
-  for (size_t i = 1; i < image.rgba.size(); i += 4) {
-    const double off = double{1} * image.rgba[i] - truth.rgba[i];
-    squares += off * off;
-  }
-  return std::sqrt(4.0 * squares / static_cast<double>(image.rgba.size()));
+  return green_rms(image, truth);
 }
 
 TriMesh ball() {

@@ -1,6 +1,7 @@
 // The one judge: what counts, what is loosened only in writing, and what is never green.
 #include "sim/judge/judge.h"
 #include "sim/judge/limit_text.h"
+#include "sim/judge/unlimited_gouge.h"
 
 #include <gtest/gtest.h>
 
@@ -296,6 +297,21 @@ TEST(Verdict, ChecksThatSeeByDifferentMeansAreNotToldAsOne) {
       verdict_sentence(checks),
       "PASS: 3 checks hold (collisions, rapids in material: contacts of 0.200 mm and more; flank limit: "
       "rays 0.5 mm apart)");
+}
+
+TEST_F(Judge, WithoutALimitTheGreaterOfGougeAndMissingMaterialFails) {
+  const auto fails = [](double gouge_um, double missing_um) {
+    measure::SurfaceMetrics surface;
+    surface.gouge_max_um = gouge_um;
+    surface.missing_max_um = missing_um;
+    return unlimited_gouge(surface);
+  };
+  EXPECT_EQ(fails(100.0, 10.0), UnlimitedGouge::kNone);
+  EXPECT_EQ(fails(100.1, 10.0), UnlimitedGouge::kCut);
+  EXPECT_EQ(fails(50.0, 20.0), UnlimitedGouge::kMissing);
+  EXPECT_EQ(fails(5000.0, 20.0), UnlimitedGouge::kCut);
+  EXPECT_EQ(fails(5000.0, 5000.0), UnlimitedGouge::kMissing) << "what is missing counts as a gouge too";
+  EXPECT_EQ(fails(4000.0, 6870.0), UnlimitedGouge::kMissing);
 }
 
 }  // namespace
