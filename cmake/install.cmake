@@ -27,7 +27,7 @@ install(FILES "${PROJECT_BINARY_DIR}/manual.man" DESTINATION "${CMAKE_INSTALL_MA
 install(FILES "${PROJECT_BINARY_DIR}/manual.bash"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME swarf COMPONENT program)
 
-foreach(module base mesh surface brep cutter position kinematics program toolpath flank motion machine post stock collision measure sim avoidance papers render
+foreach(module base mesh surface brep cutter position kinematics program toolpath flank motion machine post stock collision measure proof sim avoidance papers render
                reports)
   set_target_properties(swarf_${module} PROPERTIES EXPORT_NAME ${module})
   list(APPEND libraries swarf_${module})

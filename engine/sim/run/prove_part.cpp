@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/units.h"
+#include "proof/gouge_bound.h"
+#include "proof/leftover_bound.h"
 #include "sim/run/result.h"
 #include "sim/run/tile_ranks.h"
 
@@ -56,7 +58,77 @@ std::vector<stock::RayFieldPtr> fields_of(const MeasuredPath& path) {
   return fields;
 }
 
+/// Regions that lie wholly beyond a proven bound come from columns that lean.
+void drop_beyond(std::vector<measure::Region>& regions, double bound_um) {
+  std::erase_if(regions, [&](const measure::Region& region) { return region.worst_um > bound_um; });
+}
+
+/// What a proof has found deeper or higher than the rays is a place of its own, of unknown area.
+void add_found(std::vector<measure::Region>& regions, const measure::Region& found, double limit_um) {
+  if (!(found.worst_um > limit_um)) return;
+  const bool known = std::any_of(regions.begin(), regions.end(), [&](const measure::Region& region) {
+    return region.worst_um >= found.worst_um * (1.0 - 1e-3);
+  });
+  if (!known) regions.insert(regions.begin(), found);
+}
+
+void take_gouges(const proof::GougeBound& proven, double slack_mm, double limit_um,
+                 measure::SurfaceMetrics& surface) {
+  surface.gouge_bound = {um_from_mm(proven.bound_mm + slack_mm), proven.place};
+  drop_beyond(surface.gouges, surface.gouge_bound->um);
+  if (settle(surface.gouge_max_um, surface.gouge_block, um_from_mm(proven.found_mm), proven.sweep,
+             *surface.gouge_bound))
+    surface.gouge_bottom = proven.bottom;
+  add_found(surface.gouges,
+            {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, proven.sweep, 0, 0, proven.bottom}, limit_um);
+}
+
+void take_leftover(const proof::LeftoverBound& proven, double slack_mm, double limit_um,
+                   measure::SurfaceMetrics& surface) {
+  surface.excess_bound = {um_from_mm(proven.bound_mm + slack_mm), proven.place};
+  surface.unmeasured_area_mm2 += proven.open_area_mm2;
+  drop_beyond(surface.excesses, surface.excess_bound->um);
+  if (settle(surface.excess_max_um, surface.excess_block, um_from_mm(proven.found_mm), stock::kUncut,
+             *surface.excess_bound))
+    surface.excess_top = proven.top;
+  add_found(surface.excesses,
+            {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, stock::kUncut, 0, 0, proven.top}, limit_um);
+}
+
 }  // namespace
+
+bool prove_body(const Job& job, Progress& progress, Result& result) {
+  MeasuredPath& main = result.main;
+  const AcceptLimits& accept = job.scene.accept;
+  const double gouge_um = accept.gouge_max_um.value_or(kGougeAllowed);
+  const double excess_um = accept.excess_max_um.value_or(kExcessAllowed);
+  constexpr double kRounding = 2e-6;  // mm: a touch of both proofs
+  const double slack = job.proof.chord_mm + main.rays.error_bound_mm + kRounding;
+  if (job.proof.mesh == nullptr || std::min(gouge_um, excess_um) * kMicrometre <= slack) return false;
+  const RayCutters rays = ray_cutters(job, main);
+  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
+  const proof::SolidDesign design(*job.proof.mesh, job.proof.chord_mm);
+  measure::SurfaceMetrics& surface = main.surface;
+  progress.begin("prove", 2.0, "sides");
+  const proof::GougeBound gouges =
+      proof::bound_gouges({design, main.rays.sweeps, cutters, gouge_um * kMicrometre - slack,
+                           surface.gouge_max_um * kMicrometre, progress});
+  progress.advance(1.0);
+  const proof::LeftoverBound leftover =
+      proof::bound_leftover({design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
+                             excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre, progress, 1.0});
+  if (getenv("SWARF_DBG")) fprintf(stderr, "gouge bound %.3f found %.3f rays %.3f at %.4f %.4f %.4f foot %.4f %.4f %.4f sweep %u open %zu; rays bottom %.4f %.4f %.4f\nleftover bound %.3f found %.3f rays %.3f top %.4f %.4f %.4f foot %.4f %.4f %.4f open %zu area %.3f regions %zu parts %zu at %.4f %.4f %.4f facets %zu chord %.3f sweeps %zu\n", gouges.bound_mm*1e3, gouges.found_mm*1e3, surface.gouge_max_um, gouges.bottom.x(), gouges.bottom.y(), gouges.bottom.z(), gouges.foot.x(), gouges.foot.y(), gouges.foot.z(), gouges.sweep, gouges.open, surface.gouge_bottom.x(), surface.gouge_bottom.y(), surface.gouge_bottom.z(), leftover.bound_mm*1e3, leftover.found_mm*1e3, surface.excess_max_um, leftover.top.x(), leftover.top.y(), leftover.top.z(), leftover.foot.x(), leftover.foot.y(), leftover.foot.z(), leftover.open, leftover.open_area_mm2, leftover.regions, leftover.parts, leftover.place.x(), leftover.place.y(), leftover.place.z(), design.facets(), job.proof.chord_mm*1e3, main.rays.sweeps.size());
+  if (!progress.stop_requested()) {
+    take_gouges(gouges, slack, gouge_um, surface);
+    take_leftover(leftover, slack, excess_um, surface);
+    surface.gouge_regions = keep_worst(surface.gouges);
+    surface.excess_regions = keep_worst(surface.excesses);
+    if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
+      surface.scallop_bound = surface.excess_bound;
+  }
+  progress.end();
+  return !accept.scallop_max_um || surface.scallop_bound.has_value() || progress.stop_requested();
+}
 
 ProofInputs::ProofInputs(const Job& job, const MeasuredPath& path, const stock::Stock& stock)
     : job_(job),
@@ -96,7 +168,8 @@ bool wants_proof(const Job& job) {
 
 void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
-  if (main.dexels.empty() || !wants_proof(job)) return;
+  if (main.dexels.empty()) return;
+  if (prove_body(job, progress, result) || !wants_proof(job)) return;
   progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
   const ProofInputs inputs(job, main, *result.stock);
   if (ranks != nullptr) send_whole_stock(*ranks, *result.stock);
