@@ -10,7 +10,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from generator import plates  # noqa: E402, F401
+from generator import axes, features, plates  # noqa: E402, F401
 from generator.job import JOBS  # noqa: E402
 
 

@@ -200,13 +200,13 @@ def pocket(p, tool, cx, cy, w, h, radius, top, bottom, step, f=600, name="wall",
     contour_inside(p, tool, cx, cy, w + 2 * grow, h + 2 * grow, radius + grow, heights[-1], top, finish_f, name)
 
 
-def contour_inside(p, tool, cx, cy, w, h, radius, z, top, f=400, name="wall"):
-    """The wall of a pocket, climb, with arcs in and out."""
+def contour_inside(p, tool, cx, cy, w, h, radius, z, top, f=400, name="wall", clear=True):
+    """The wall of a pocket, climb, with arcs in and out; clear: where it begins is cut down to z already."""
     r = tool.d / 2
     lead = min(2.0, (h / 2 - r) * 0.8)
     y = cy - h / 2 + r
     p.rapid(cx - lead, y + lead)
-    p.rapid(z=z + NEAR if z + NEAR < top else top + NEAR)
+    p.rapid(z=z + NEAR if clear and z + NEAR < top else top + NEAR)
     p.line(z=z, f=200)
     p.arc(True, cx, y, lead, 0, f=f)
     p.mark(name)

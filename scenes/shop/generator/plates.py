@@ -178,7 +178,7 @@ def slot_ramped():
             p.line(30 if k % 2 == 0 else -30, 0, -11.8 if z == -12 else z, f=700)
         p.line(-30 if p.at["X"] == "X30." else 30, 0)
         p.rapid(z=NEAR)
-        contour_inside(p, t2, 0, 0, 76, 16, 8, deep, 0, name="wall")
+        contour_inside(p, t2, 0, 0, 76, 16, 8, deep, 0, name="wall", clear=False)
         p.rapid(-30, 0)
         p.rapid(z=-9)
         p.line(z=deep, f=200)

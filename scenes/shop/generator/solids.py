@@ -136,6 +136,8 @@ def write_stl(shape, path, name, chord_um=CHORD_UM, facets=None):
         error = chord_error(shape, facets)
         ask *= 0.9
     assert error <= chord_um / 1000, f"{name}: facets err by {error} mm"
+    volume = sum(a.dot(b.cross(c)) for a, b, c in facets) / 6
+    assert abs(volume / shape.Volume - 1) < 0.01, f"{name}: volume {volume} of the facets, {shape.Volume} of the faces"
     with open(path, "wb") as file:
         file.write(name.encode()[:80].ljust(80, b" "))
         file.write(struct.pack("<I", len(facets)))
