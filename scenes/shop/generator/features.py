@@ -582,13 +582,13 @@ def large_plate():
         for k, (x, y) in enumerate(pockets):
             pocket(p, t2, x, y, 120, 80, 14, 0, -10, 5, f=1200, name=f"pocket {k}",
                    floor=0.02 if fault and k == 2 else 0)
-        p.rapid(9.5, 0)
+        p.rapid(8, 0)
         p.line(z=0.5, f=400)
         start = 0.5
         for z in levels(0, -31, 8):
-            p.line(9.5, 0, f=1200)
-            p.helix(0, 0, 9.5, start, z, 4, 1200)
-            for ring in (9.5, 24, 39.5):
+            p.line(8, 0, f=1200)
+            p.helix(0, 0, 8, start, z, 4, 1200)
+            for ring in (8, 22, 39.5):
                 p.line(ring, 0)
                 p.circle(0, 0, ring, f=1200)
             start = z

@@ -79,17 +79,23 @@ class Job:
             lines += ["", tool.text()]
         return "\n".join(lines) + "\n"
 
-    def fault_record(self, right, right_text, wrong_text):
+    def mesh_sets(self):
+        """What --set says so that part.stl is the design: limits are those of the faces and the facets' error."""
+        setup = "setup[1]." if "[[setup]]" in self.scene() else ""
+        return [setup + 'design={mesh="part.stl"}', f"{setup}accept.gouge_max_um={self.chord_um + 2:g}",
+                f"{setup}accept.excess_max_um={self.excess_um + self.chord_um:g}"]
+
+    def truth(self, right, right_text, wrong_text):
         fault = self.fault
-        edits = []
         a, b = right_text.split("\n"), wrong_text.split("\n")
         assert len(a) == len(b), f"{self.name}: the fault changes the number of lines"
         edits = [[k + 1, x, y] for k, (x, y) in enumerate(zip(a, b)) if x != y]
         assert edits or fault.sets, f"{self.name}: the fault changes nothing"
-        lines = [list(right.marks[mark]) for mark in fault.marks]
-        return {"what": fault.what, "kind": fault.kind, "amount_um": round(fault.amount, 3),
-                "place_mm": [round(c, 4) for c in fault.place], "lines": lines, "edits": edits,
-                "set": fault.sets}
+        return {"mesh": {"chord_um": self.chord_um, "set": self.mesh_sets()},
+                "fault": {"what": fault.what, "kind": fault.kind, "amount_um": round(fault.amount, 3),
+                          "place_mm": [round(c, 4) for c in fault.place],
+                          "lines": [list(right.marks[mark]) for mark in fault.marks], "edits": edits,
+                          "set": fault.sets}}
 
     def write(self, folder, shapes=True):
         folder.mkdir(exist_ok=True)
@@ -105,9 +111,7 @@ class Job:
         (folder / "scene.toml").write_text(self.scene())
         for name, make in (self.files or {}).items():
             make(folder / name)
-        if self.fault:
-            record = self.fault_record(right, text, self.text_of(True)[1])
-            dump = json.dumps(record, indent=1)
-            dump = re.sub(r"\[\s*([^\[\]{}]*?)\s*\]", lambda m: "[" + re.sub(r"\s*\n\s*", " ", m[1]) + "]", dump)
-            (folder / "fault.json").write_text(dump + "\n")
+        dump = json.dumps(self.truth(right, text, self.text_of(True)[1]), indent=1)
+        dump = re.sub(r"\[\s*([^\[\]{}]*?)\s*\]", lambda m: "[" + re.sub(r"\s*\n\s*", " ", m[1]) + "]", dump)
+        (folder / "truth.json").write_text(dump + "\n")
         print(f"{len(right.lines)} lines")
