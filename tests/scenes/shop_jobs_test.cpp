@@ -1,10 +1,11 @@
-// The ordinary jobs of scenes/shop on the shipped program: a right part passes against its STEP faces and against
-// its STL facets, and a planted fault of 5 to 50 um fails with its amount and its line.
+// The ordinary jobs of scenes/shop on the shipped program: a right part passes against its STEP faces and
+// against its STL facets, and a planted fault of 5 to 50 um fails with its amount and its line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -23,10 +24,44 @@ using swarf::test::ProgramRun;
 const fs::path kShop = SWARF_SOURCE_DIR "/scenes/shop";
 
 /// Jobs that must pass all three runs.
-const std::vector<std::string> kPassing{};
+const std::vector<std::string> kPassing{"fillet_ball", "thin_rib"};
+
+constexpr const char* kNoVerdict = "the proof does not close within the limits in 10 s of processor time";
+constexpr const char* kBoundOpen =
+    "gouge is measured as 0, its bound stays at millimetres beside the undercut";
+constexpr const char* kPhantom = "against the facets, excess is told at a rim where nothing stands";
 
 /// Jobs that do not yet, with the reason. One that passes fails the test, so that it is moved to kPassing.
-const std::map<std::string, std::string> kPending{};
+const std::map<std::string, std::string> kPending{
+    {"cap_ball", kNoVerdict},
+    {"casting_faced", kNoVerdict},
+    {"chamfer_contour", kNoVerdict},
+    {"counterbores_pecked", kNoVerdict},
+    {"drilled_plate_countersinks", kNoVerdict},
+    {"engraved_v", kPhantom},
+    {"face_boss", kNoVerdict},
+    {"five_sided_block", kNoVerdict},
+    {"floor_bull_nose", kNoVerdict},
+    {"helical_bore", kNoVerdict},
+    {"impeller_pocket", kNoVerdict},
+    {"inch_program", kNoVerdict},
+    {"inclined_holes", kNoVerdict},
+    {"island_pocket", kNoVerdict},
+    {"keyway", kNoVerdict},
+    {"large_plate_600x400", kNoVerdict},
+    {"mirrored_program", kNoVerdict},
+    {"open_pocket_draft", kNoVerdict},
+    {"oring_groove", kNoVerdict},
+    {"outer_contour_g41", kNoVerdict},
+    {"pocket_two_levels", kNoVerdict},
+    {"ruled_wall_flank", kPhantom},
+    {"sixty_holes", kNoVerdict},
+    {"slot_ramped", kNoVerdict},
+    {"stepped_shaft_4axis", kNoVerdict},
+    {"t_slot", kBoundOpen},
+    {"thread_milled_bore", kNoVerdict},
+    {"two_setups_turned", kNoVerdict},
+};
 
 /// Processor seconds after which a pending job counts as one without a verdict.
 constexpr int kPatience = 10;
@@ -103,8 +138,7 @@ std::string fault_error(const json& fault, const ShopRun& made) {
   for (const json& finding : findings) {
     if (finding["code"] != kind) continue;
     const int line = finding["line"];
-    // Excess is no block's doing where nothing has cut: line 0.
-    if (within(fault["lines"], line) || (kind == "excess" && line == 0)) return "";
+    if (within(fault["lines"], line)) return "";
     return kind + " of line " + std::to_string(line) + ", true are " + fault["lines"].dump();
   }
   return "no finding of " + kind;
