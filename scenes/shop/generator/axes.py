@@ -384,8 +384,9 @@ excess_max_um = 10
     head, tools = scene.split("[[setup]]", 1)[0], scene[scene.index("[[tool]]"):]
     middle = scene[len(head):scene.index("[[tool]]")]
     Job("two_setups_turned", "Two set-ups, turned over", part, None, [], program,
-        Fault("gouge", 15, (25.0, 0, -16), "wall", "the part is clamped 15 um beside its place in the second set-up",
-              ["setup[1].part_pose={position_mm=[0.015,0,-20],rotation_deg=[180,0,0]}"]),
+        Fault("excess", 15, (0, 0, -12), ("wall floor", "wall", "face"),
+              "the zero of the second set-up is 15 um too high, so that the part lies too low",
+              ["setup[1].part_pose={position_mm=[0,0,-20.015],rotation_deg=[180,0,0]}"]),
         scene_text=head + tools + "\n" + middle.rstrip() + "\n", files={"turned_over.nc": turned_over})
 
 
