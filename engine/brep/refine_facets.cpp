@@ -37,7 +37,9 @@ struct Middle {
 };
 
 using SideKey = std::pair<uint32_t, uint32_t>;
-SideKey key_of(uint32_t a, uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+SideKey key_of(uint32_t a, uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
 class Refiner {
  public:
@@ -55,10 +57,12 @@ class Refiner {
       for (size_t k = 0; k < 3; ++k) {
         facet.corners[k] = vertex_of[facets.mesh.triangles[n][k]];
         if (on.edges[k] != kNoEdge)
-          facet.sides[k] = {on.edges[k], 0.0, static_cast<double>(under_.edges[static_cast<size_t>(on.edges[k])].size() - 1)};
+          facet.sides[k] = {on.edges[k], 0.0,
+                            static_cast<double>(under_.edges[static_cast<size_t>(on.edges[k])].size() - 1)};
       }
       facets_.push_back(facet);
     }
+    find_sides();
   }
 
   /// False: more than `most` triangles.
@@ -71,12 +75,27 @@ class Refiner {
     return true;
   }
 
+  /// Whether a facet lies against its face: an edge bulged across another one nearby.
+  bool is_folded() const {
+    constexpr double kNeedle = 1e-9;  // mm2; rounding turns smaller ones
+    return std::any_of(facets_.begin(), facets_.end(), [&](const FineFacet& facet) {
+      const Vec3& a = points_[facet.corners[0]];
+      const Vec3 across = (points_[facet.corners[1]] - a).cross(points_[facet.corners[2]] - a);
+      if (across.norm() < kNeedle) return false;
+      const Vec2 middle = (facet.uv[0] + facet.uv[1] + facet.uv[2]) / 3.0;
+      const surface::Derivatives d = surface_of(facet).derivatives(middle.x(), middle.y());
+      const Vec3 normal = d.Su.cross(d.Sv);
+      return normal.norm() > 0.0 && turned_[static_cast<size_t>(facet.surface)] * across.dot(normal) < 0.0;
+    });
+  }
+
   FineFacets result() const {
     FineFacets fine;
     double farthest = 0.0;
     for (const Vec3& p : points_) {
       farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
-      fine.mesh.positions.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+      fine.mesh.positions.push_back(
+          {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
     }
     for (const FineFacet& facet : facets_) fine.mesh.triangles.push_back(facet.corners);
     constexpr size_t kFacetsPerTask = 256;
@@ -92,14 +111,29 @@ class Refiner {
   }
 
  private:
-  bool is_curved(const FineFacet& facet) const { return under_.is_plane[static_cast<size_t>(facet.surface)] == 0; }
+  /// Which way the parameters turn, seen from outside, of each surface: as most of its facets' area lies.
+  void find_sides() {
+    turned_.assign(under_.surfaces.size(), 0.0);
+    for (const FineFacet& facet : facets_) {
+      const Vec3& a = points_[facet.corners[0]];
+      const Vec3 across = (points_[facet.corners[1]] - a).cross(points_[facet.corners[2]] - a);
+      const Vec2 middle = (facet.uv[0] + facet.uv[1] + facet.uv[2]) / 3.0;
+      const surface::Derivatives d = surface_of(facet).derivatives(middle.x(), middle.y());
+      turned_[static_cast<size_t>(facet.surface)] += across.dot(d.Su.cross(d.Sv));
+    }
+  }
+
+  bool is_curved(const FineFacet& facet) const {
+    return under_.is_plane[static_cast<size_t>(facet.surface)] == 0;
+  }
   const surface::Surface& surface_of(const FineFacet& facet) const {
     return *under_.surfaces[static_cast<size_t>(facet.surface)];
   }
   double strays(const FineFacet& facet) const {
     if (!is_curved(facet)) return 0.0;
     return distance_bound(surface_of(facet), facet.uv,
-                          {points_[facet.corners[0]], points_[facet.corners[1]], points_[facet.corners[2]]}, chord_mm_);
+                          {points_[facet.corners[0]], points_[facet.corners[1]], points_[facet.corners[2]]},
+                          chord_mm_);
   }
 
   /// The parameters at a share of a side.
@@ -107,7 +141,8 @@ class Refiner {
     const Piece& piece = facet.sides[k];
     if (piece.edge == kNoEdge) return facet.uv[k] + share * (facet.uv[(k + 1) % 3] - facet.uv[k]);
     const surface::EdgePlaces& places = under_.edges[static_cast<size_t>(piece.edge)];
-    const double at = std::clamp(piece.from + share * (piece.to - piece.from), 0.0, static_cast<double>(places.size() - 1));
+    const double at =
+        std::clamp(piece.from + share * (piece.to - piece.from), 0.0, static_cast<double>(places.size() - 1));
     const auto below = std::min(static_cast<size_t>(at), places.size() - 2);
     return places[below] + (at - static_cast<double>(below)) * (places[below + 1] - places[below]);
   }
@@ -181,7 +216,8 @@ class Refiner {
     return {Piece{piece.edge, piece.from, middle}, Piece{piece.edge, middle, piece.to}};
   }
 
-  void divide(const FineFacet& f, const std::map<SideKey, Middle>& middles, std::vector<FineFacet>& finer) const {
+  void divide(const FineFacet& f, const std::map<SideKey, Middle>& middles,
+              std::vector<FineFacet>& finer) const {
     constexpr uint32_t kNone = 0xffffffffu;
     std::array<Corner, 3> m;
     int count = 0;
@@ -197,12 +233,14 @@ class Refiner {
     }
     const auto corner = [&](size_t k) { return Corner{f.corners[k % 3], f.uv[k % 3]}; };
     const auto add = [&](const std::array<Corner, 3>& c, const std::array<Piece, 3>& sides) {
-      finer.push_back({f.surface, {c[0].vertex, c[1].vertex, c[2].vertex}, {c[0].uv, c[1].uv, c[2].uv}, sides});
+      finer.push_back(
+          {f.surface, {c[0].vertex, c[1].vertex, c[2].vertex}, {c[0].uv, c[1].uv, c[2].uv}, sides});
     };
     const auto first = [&](size_t k) { return halves(f.sides[k % 3])[0]; };
     const auto second = [&](size_t k) { return halves(f.sides[k % 3])[1]; };
     if (count == 3) {
-      for (size_t k = 0; k < 3; ++k) add({corner(k), m[k], m[(k + 2) % 3]}, {first(k), Piece{}, second(k + 2)});
+      for (size_t k = 0; k < 3; ++k)
+        add({corner(k), m[k], m[(k + 2) % 3]}, {first(k), Piece{}, second(k + 2)});
       add({m[0], m[1], m[2]}, {});
       return;
     }
@@ -224,6 +262,7 @@ class Refiner {
   double chord_mm_, most_sagitta_ = 0.0;
   std::vector<Vec3> points_;
   std::vector<FineFacet> facets_;
+  std::vector<double> turned_;  ///< of each surface; its sign counts
 };
 
 }  // namespace
@@ -233,7 +272,7 @@ FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most) {
   for (const surface::FacetOnSurface& on : facets.under->facets)
     if (on.surface == kNoEdge) return {};
   Refiner refiner(facets, chord_mm);
-  if (!refiner.refine(most)) return {};
+  if (!refiner.refine(most) || refiner.is_folded()) return {};
   return refiner.result();
 }
 

@@ -1,5 +1,6 @@
-// Finer facets of a shape that is tessellated, by its surfaces and edges alone: sides are halved on the curve or the
-// surface that they stand for. The library behind tessellate() takes many times as long for as fine a mesh.
+// Finer facets of a shape that is tessellated, by its surfaces and edges alone: sides are halved on the curve
+// or the surface that they stand for. The library behind tessellate() takes many times as long for as fine a
+// mesh.
 #pragma once
 
 #include "brep/model.h"
@@ -7,12 +8,13 @@
 namespace swarf::brep {
 
 struct FineFacets {
-  TriMesh mesh;           ///< welded
-  double chord_mm = 0.0;  ///< no face strays farther from its facets, proven by the bends; edges at their quarters
+  TriMesh mesh;  ///< welded
+  double chord_mm =
+      0.0;  ///< no face strays farther from its facets, proven by the bends; edges at their quarters
 };
 
-/// Sides that stray by more than `chord_mm` are halved until none does. `most`: of triangles; with more, or where
-/// facets have no surface (across creases), the mesh is empty.
+/// Sides that stray by more than `chord_mm` are halved until none does. `most`: of triangles; with more, or
+/// where facets have no surface (across creases), the mesh is empty.
 FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most);
 
 }  // namespace swarf::brep

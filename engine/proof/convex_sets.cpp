@@ -20,7 +20,8 @@ double to_facet(const std::array<Vec3, 3>& facet, const Vec3& x) {
 
 }  // namespace
 
-SweepSet::SweepSet(const stock::Sweep& sweep, const stock::CutterSolid& cutter, size_t piece, const Vec3& near)
+SweepSet::SweepSet(const stock::Sweep& sweep, const stock::CutterSolid& cutter, size_t piece,
+                   const Vec3& near)
     : cutter_(&cutter), piece_(piece) {
   const stock::SweepMap map = stock::sweep_map(sweep);
   if (sweep.start.axis_W == sweep.end.axis_W) {
@@ -53,7 +54,9 @@ double NearerSet::value(const Vec3& x) const {
   return to_facet(facet, x) - (1.0 - kShare) * height(x) + kStrict;
 }
 
-double WithinSet::value(const Vec3& x) const { return to_facet(facet, x) - mm; }
+double WithinSet::value(const Vec3& x) const {
+  return to_facet(facet, x) - mm;
+}
 
 double value(const ConvexSet& set, const Vec3& x) {
   return std::visit([&](const auto& one) { return one.value(x); }, set);

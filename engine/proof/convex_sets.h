@@ -1,5 +1,5 @@
-// Sets that hold no leftover material, each convex: value(x) <= 0 inside, a convex function of x. Internal to this
-// folder.
+// Sets that hold no leftover material, each convex: value(x) <= 0 inside, a convex function of x. Internal to
+// this folder.
 #pragma once
 
 #include <array>
@@ -28,9 +28,9 @@ class SweepSet {
  private:
   const stock::CutterSolid* cutter_;
   size_t piece_;
-  Mat3 rows_;            ///< W to the tool's frame
-  Vec3 origin_, way_;    ///< of the point x = 0, and what the motion adds; tool frame, mm
-  bool moves_ = false;   ///< way_ is not 0
+  Mat3 rows_;           ///< W to the tool's frame
+  Vec3 origin_, way_;   ///< of the point x = 0, and what the motion adds; tool frame, mm
+  bool moves_ = false;  ///< way_ is not 0
 };
 
 /// Places nearer to a facet than to the foot of a height.

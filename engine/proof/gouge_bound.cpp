@@ -45,7 +45,9 @@ struct Span {
 };
 
 /// Angle between two axes, rad.
-double turn_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double turn_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 Span span_of(const stock::Sweep& sweep, double t0, double t1, double lever_mm) {
   const double turn = turn_between(sweep.start.axis_W, sweep.end.axis_W);
@@ -182,7 +184,8 @@ class DeepSearch {
       return true;
     };
     for (int i = 0; i <= kParts; ++i)
-      for (int k = 0; i + k <= kParts; ++k) try_at({static_cast<double>(i) / kParts, static_cast<double>(k) / kParts});
+      for (int k = 0; i + k <= kParts; ++k)
+        try_at({static_cast<double>(i) / kParts, static_cast<double>(k) / kParts});
     for (const ToolPose* pose : {&sweep_.start, &sweep_.end}) look_at(pose->tip_W, best);
     // Where the tool comes down on a large facet: the places under the tip, and around it.
     for (const double t : {0.0, 0.5, 1.0}) {
@@ -376,6 +379,8 @@ class GougeSearch {
 
 }  // namespace
 
-GougeBound bound_gouges(const GougeQuestion& question) { return GougeSearch(question).run(); }
+GougeBound bound_gouges(const GougeQuestion& question) {
+  return GougeSearch(question).run();
+}
 
 }  // namespace swarf::proof

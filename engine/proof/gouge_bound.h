@@ -1,9 +1,10 @@
-// How deep the sweeps of a program cut into a design, proven sweep by sweep (theory 8.1).
+// How deep the sweeps of a program cut into a design, proven sweep by sweep (theory 8).
 //
-// A sweep gouges by at most g if a body that lies within g of every point of the cutter passes clear of the design
-// (tool_body.h). A cutter that does not turn sweeps the hull of its two ends; one that turns is divided in time
-// until the hull of both ends, widened by the sagitta, is clear. Clear of the surface and with one point outside,
-// a sweep is outside. The work grows with the sweeps and the facets near them, not with the area of the design.
+// A sweep gouges by at most g if a body that lies within g of every point of the cutter passes clear of the
+// design (tool_body.h). A cutter that does not turn sweeps the hull of its two ends; one that turns is
+// divided in time until the hull of both ends, widened by the sagitta, is clear. Clear of the surface and
+// with one point outside, a sweep is outside. The work grows with the sweeps and the facets near them, not
+// with the area of the design.
 #pragma once
 
 #include <cstdint>

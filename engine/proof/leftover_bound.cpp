@@ -18,7 +18,9 @@ constexpr int kRounds = 8;
 /// What is asked for above a leftover that was found: mm, and share.
 constexpr double kGap = 4e-5, kGapShare = 5e-4;
 
-double angle_to(const Vec3& a, const Vec3& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)); }
+double angle_to(const Vec3& a, const Vec3& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+}
 
 /// The region of a feature from `low` up to `high` over its feet; empty where it has no height.
 Region region_of(const FeatureCell& cell, double low, double high) {
@@ -108,7 +110,8 @@ class LeftoverSearch {
         told[task] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts()};
       });
       if (round == 0)
-        in_.progress.advance(in_.progress_from + 0.8 * static_cast<double>(first + count) / static_cast<double>(tasks));
+        in_.progress.advance(in_.progress_from +
+                             0.8 * static_cast<double>(first + count) / static_cast<double>(tasks));
     }
     for (const TaskResult& one : told) take(one);
     std::vector<uint32_t> left;
@@ -162,7 +165,8 @@ class LeftoverSearch {
     if (in_.design.distance().at(centre).distance_mm + radius <= within) return RegionState::kProven;
     constexpr double kLeast = 0.7;  // voxels
     if (side < kLeast * in_.stock.voxel_mm()) {
-      const Region cube{box_polytope({low, low + Vec3::Constant(side)}), {Vec3::Zero(), Vec3::Zero(), within}};
+      const Region cube{box_polytope({low, low + Vec3::Constant(side)}),
+                        {Vec3::Zero(), Vec3::Zero(), within}};
       return prover.prove(cube, above);
     }
     RegionState worst = RegionState::kProven;
@@ -196,6 +200,8 @@ class LeftoverSearch {
 
 }  // namespace
 
-LeftoverBound bound_leftover(const LeftoverQuestion& question) { return LeftoverSearch(question).run(); }
+LeftoverBound bound_leftover(const LeftoverQuestion& question) {
+  return LeftoverSearch(question).run();
+}
 
 }  // namespace swarf::proof

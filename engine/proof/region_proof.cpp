@@ -48,7 +48,9 @@ bool RegionProver::is_beyond_raw(const Polytope& body, const Vec3& centre, doubl
   const stock::RawShape& raw = in_.stock.raw();
   const Box& box = raw.box();
   for (int k = 0; k < 3; ++k) {
-    const auto all = [&](auto beyond) { return std::all_of(body.corners.begin(), body.corners.end(), beyond); };
+    const auto all = [&](auto beyond) {
+      return std::all_of(body.corners.begin(), body.corners.end(), beyond);
+    };
     if (all([&](const Vec3& v) { return v[k] >= box.upper[k] - kTouch; })) return true;
     if (all([&](const Vec3& v) { return v[k] <= box.lower[k] + kTouch; })) return true;
   }
@@ -73,6 +75,13 @@ void RegionProver::find_candidates(const Polytope& body, const Vec3& centre, dou
       if (set.value(centre) <= radius) candidates_.push_back({set, n, piece});
     }
   }
+}
+
+/// The place of the design nearest to a place of a region, which is no farther than its own feature.
+mesh::SignedPoint RegionProver::nearest(const Vec3& x, const Region& region, double above_mm) const {
+  const double own = region.height(x) / std::cos(SolidDesign::kMostTurn);
+  const mesh::SignedPoint near = in_.design.distance().at(x, std::max(own, above_mm) + kTouch);
+  return std::isfinite(near.distance_mm) ? near : in_.design.distance().at(x);
 }
 
 bool RegionProver::is_leftover(const Vec3& x) const {
@@ -117,8 +126,8 @@ void RegionProver::climb(const Vec3& x, double height_mm) {
   foot_ = there.foot;
 }
 
-/// In two, by a plane a little inside the border of a set that holds the centre; without one across the longest
-/// way.
+/// In two, by a plane a little inside the border of a set that holds the centre; without one across the
+/// longest way.
 void RegionProver::split(Part& part, const ConvexSet* by, const Vec3& centre) {
   Vec3 normal = Vec3::UnitZ();
   double offset = 0.0;
@@ -160,11 +169,6 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
   const Vec3 centre = part.body.centre();
   const double radius = part.body.radius(centre);
   if (is_beyond_raw(part.body, centre, radius)) return std::nullopt;
-  const mesh::SignedPoint seen = in_.design.distance().at(centre);
-  if (seen.distance_mm <= -radius) return std::nullopt;  // wholly in the design
-  const NearerSet nearer{facet_of(in_.design, seen.triangle), region.height};
-  const WithinSet within{nearer.facet, above_mm};
-  if (holds(within, part.body) || holds(nearer, part.body)) return std::nullopt;
   if (part.is_root) {
     find_candidates(part.body, centre, radius);
     for (uint32_t n = 0; n < candidates_.size(); ++n) part.near.push_back(n);
@@ -194,6 +198,11 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
     best = &one.set;
   }
   if (in_.stock.air_radius_mm(centre) - in_.stock_bound_mm >= radius) return std::nullopt;
+  const mesh::SignedPoint seen = nearest(centre, region, above_mm);
+  if (seen.distance_mm <= -radius) return std::nullopt;  // wholly in the design
+  const NearerSet nearer{facet_of(in_.design, seen.triangle), region.height};
+  const WithinSet within{nearer.facet, above_mm};
+  if (holds(within, part.body) || holds(nearer, part.body)) return std::nullopt;
   const double smallest = std::max(kSmallest, kSmallestShare * above_mm);
   if (radius < smallest || ++region_parts_ > kMostParts) return RegionState::kOpen;
   ConvexSet other = within;

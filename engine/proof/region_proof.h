@@ -51,6 +51,7 @@ class RegionProver {
   void find_candidates(const Polytope& body, const Vec3& centre, double radius);
   std::optional<RegionState> look_at(Part& part, const Region& region, double above_mm);
   void split(Part& part, const ConvexSet* by, const Vec3& centre);
+  mesh::SignedPoint nearest(const Vec3& x, const Region& region, double above_mm) const;
   bool is_leftover(const Vec3& x) const;
   void climb(const Vec3& x, double height_mm);
 

@@ -64,12 +64,14 @@ Vec3 turned(const Vec3& from, const Vec3& to, double share) {
   return (std::sin((1.0 - share) * angle) * from + std::sin(share * angle) * to).normalized();
 }
 
-void add_wedge(const Vec3& a, const Vec3& b, const Vec3& from, const Vec3& to, std::vector<FeatureCell>& cells) {
+void add_wedge(const Vec3& a, const Vec3& b, const Vec3& from, const Vec3& to,
+               std::vector<FeatureCell>& cells) {
   const double angle = std::acos(std::clamp(from.dot(to), -1.0, 1.0));
   const int parts = std::max(1, static_cast<int>(std::ceil(angle / SolidDesign::kMostTurn)));
   for (int i = 0; i < parts; ++i)
-    cells.push_back({{a, b}, {turned(from, to, static_cast<double>(i) / parts),
-                              turned(from, to, static_cast<double>(i + 1) / parts)}});
+    cells.push_back({{a, b},
+                     {turned(from, to, static_cast<double>(i) / parts),
+                      turned(from, to, static_cast<double>(i + 1) / parts)}});
 }
 
 void add_cone(const Vec3& vertex, const std::array<Vec3, 3>& ways, std::vector<FeatureCell>& cells) {
@@ -109,7 +111,8 @@ std::vector<Vec3> extreme_ways(const std::vector<Vec3>& edges) {
       for (const double sign : {1.0, -1.0}) {
         const Vec3 m = sign * across.normalized();
         if (!holds(m)) continue;
-        const bool known = std::any_of(ways.begin(), ways.end(), [&](const Vec3& w) { return (w - m).norm() < kFlatTurn; });
+        const bool known =
+            std::any_of(ways.begin(), ways.end(), [&](const Vec3& w) { return (w - m).norm() < kFlatTurn; });
         if (!known) ways.push_back(m);
       }
     }
@@ -117,8 +120,8 @@ std::vector<Vec3> extreme_ways(const std::vector<Vec3>& edges) {
   return ways;
 }
 
-/// The cone's directions lie in the fan of triangles around their mean. The edges of a hollow corner have such a
-/// cone too, which points into the body.
+/// The cone's directions lie in the fan of triangles around their mean. The edges of a hollow corner have
+/// such a cone too, which points into the body.
 void add_vertex(const mesh::SignedDistance& design, const Vec3& vertex, std::vector<Vec3> ways,
                 std::vector<FeatureCell>& cells) {
   if (ways.size() < 3) return;  // no more than a wedge's border
@@ -138,7 +141,8 @@ void add_vertex(const mesh::SignedDistance& design, const Vec3& vertex, std::vec
     add_cone(vertex, {ways[0], ways[1], ways[2]}, cells);
     return;
   }
-  for (size_t k = 0; k < ways.size(); ++k) add_cone(vertex, {mean, ways[k], ways[(k + 1) % ways.size()]}, cells);
+  for (size_t k = 0; k < ways.size(); ++k)
+    add_cone(vertex, {mean, ways[k], ways[(k + 1) % ways.size()]}, cells);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
-// The design as a closed body of facets, with the places outside it sorted by the feature they are nearest to.
+// The design as a closed body of facets, with the places outside it sorted by the feature they are nearest
+// to.
 //
-// Every point outside the body has a nearest point on it: inside a facet, on an edge or at a vertex. The points
-// whose nearest one is the same feature lie in a prism over the facet, in a wedge between the normals of the
-// edge's two facets, or in the normal cone of the vertex. Only edges and vertices that stand out of the body
-// have such regions. So the prisms, wedges and cones of all features hold every point outside the body.
+// Every point outside the body has a nearest point on it: inside a facet, on an edge or at a vertex. The
+// points whose nearest one is the same feature lie in a prism over the facet, in a wedge between the normals
+// of the edge's two facets, or in the normal cone of the vertex. Only edges and vertices that stand out of
+// the body have such regions. So the prisms, wedges and cones of all features hold every point outside the
+// body.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,8 @@ using cutter::Face;
 std::vector<Face> half_planes(const ConvexPiece& piece, double outward_mm) {
   std::vector<Face> planes = piece.faces;
   for (const cutter::Round& round : piece.rounds) {
-    const double first = std::atan2(round.from.y(), round.from.x()), last = std::atan2(round.to.y(), round.to.x());
+    const double first = std::atan2(round.from.y(), round.from.x()),
+                 last = std::atan2(round.to.y(), round.to.x());
     const double turn = last >= first ? last - first : last - first + 2.0 * M_PI;
     const double step = 2.0 * std::sqrt(2.0 * outward_mm / round.radius);
     const int count = std::max(1, static_cast<int>(std::ceil(turn / std::min(step, 0.5))));
@@ -41,11 +42,14 @@ std::vector<Vec2> polygon_of(const std::vector<Face>& planes, double radius, dou
     }
     polygon = std::move(kept);
   }
-  std::stable_sort(polygon.begin(), polygon.end(), [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
+  std::stable_sort(polygon.begin(), polygon.end(),
+                   [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
   return polygon;
 }
 
-bool is_top(const Face& face) { return face.normal.y() > 1.0 - 1e-12; }
+bool is_top(const Face& face) {
+  return face.normal.y() > 1.0 - 1e-12;
+}
 
 /// Whether the outline has no sharp corner but the rim of its upper end: neighbouring half planes turn by no
 /// more than rounds of radius `least_mm` and more explain.
@@ -72,8 +76,7 @@ bool is_smooth(const ConvexPiece& piece, double least_mm) {
     if (!is_face && !has_before(from[i])) return false;
     if (!is_face) continue;
     bool joined = (from[i] - Vec2(0.0, -1.0)).norm() < kSame;
-    for (size_t k = 0; k < to.size(); ++k)
-      joined = joined || (k != i && (to[k] - from[i]).norm() < kSame);
+    for (size_t k = 0; k < to.size(); ++k) joined = joined || (k != i && (to[k] - from[i]).norm() < kSame);
     if (!joined) return false;
   }
   return true;
@@ -83,15 +86,21 @@ collision::RevolvedSolid solid_of(std::vector<Vec2> corners) {
   return {Vec3::Zero(), Vec3::UnitZ(), std::move(corners)};
 }
 
-collision::RevolvedSolid shifted(collision::RevolvedSolid body, double inward, double up) {
-  for (Vec2& corner : body.corners) corner = {std::max(0.0, corner.x() - inward), corner.y() + up};
+/// Nearer to the axis by `inward` and to the middle of its height by up to `along`: an undercut holds it from
+/// above too.
+collision::RevolvedSolid shrunk(collision::RevolvedSolid body, double inward, double along) {
+  const double middle = 0.5 * (body.corners.front().y() + body.corners.back().y());
+  const double half = std::max(along, body.corners.back().y() - middle);
+  for (Vec2& corner : body.corners)
+    corner = {std::max(0.0, corner.x() - inward), middle + (corner.y() - middle) * (1.0 - along / half)};
   return body;
 }
 
 }  // namespace
 
 collision::RevolvedSolid piece_body(const ConvexPiece& piece, double outward_mm) {
-  return solid_of(polygon_of(half_planes(piece, outward_mm), piece.radius + 1.0, piece.low - 1.0, piece.high));
+  return solid_of(
+      polygon_of(half_planes(piece, outward_mm), piece.radius + 1.0, piece.low - 1.0, piece.high));
 }
 
 std::vector<collision::RevolvedSolid> reduced_bodies(const ConvexPiece& piece, double g_mm) {
@@ -109,7 +118,7 @@ std::vector<collision::RevolvedSolid> reduced_bodies(const ConvexPiece& piece, d
   // Never along one direction alone: a floor and a flank that are touched would not be left.
   for (const double degrees : {45.0, 5.0, 85.0, 22.5, 67.5}) {
     const double angle = rad_from_deg(degrees);
-    bodies.push_back(shifted(whole, g * std::cos(angle), g * std::sin(angle)));
+    bodies.push_back(shrunk(whole, g * std::cos(angle), g * std::sin(angle)));
   }
   return bodies;
 }

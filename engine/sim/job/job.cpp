@@ -256,15 +256,18 @@ double edge_chord(const AcceptLimits& accept) {
   return std::clamp(kShare * *accept.gouge_max_um * kMicrometre, kLeast, brep::kEdgeChord);
 }
 
-/// Facets of a CAD file for the proof, a fifth of the least limit from the faces. None of free-form parts that
-/// would need too many of them: those are proven on their faces.
-ProofFacets proof_facets(const brep::Facets& facets, const AcceptLimits& accept) {
+/// Facets of a CAD file for the proof, a fifth of the least limit from the faces. None of free-form parts
+/// that would need too many of them: those are proven on their faces.
+ProofFacets proof_facets(const brep::Model& model, const brep::Facets& facets, const AcceptLimits& accept) {
   constexpr double kShare = 0.2, kFinest = 2e-5, kCoarsest = 1e-3;
+  constexpr double kBaseChord = 0.05, kBaseEdge = 0.02;  // mm: of facets that are refined
   constexpr size_t kMostFacets = 200'000;
   const double gouge = accept.gouge_max_um.value_or(kGougeAllowed),
                excess = accept.excess_max_um.value_or(kExcessAllowed);
   const double chord = std::clamp(kShare * std::min(gouge, excess) * kMicrometre, kFinest, kCoarsest);
-  brep::FineFacets fine = brep::refine_facets(facets, chord, kMostFacets);
+  brep::FineFacets fine =
+      brep::refine_facets(brep::tessellate(model, kBaseChord, true, kBaseEdge), chord, kMostFacets);
+  if (fine.mesh.triangles.empty()) fine = brep::refine_facets(facets, chord, kMostFacets);
   if (fine.mesh.triangles.empty()) return {};
   return {std::make_shared<TriMesh>(std::move(fine.mesh)), fine.chord_mm};
 }
@@ -317,9 +320,10 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   if (facets.mesh.triangles.empty())
     throw InputError("cad-open", where, fmt::format("{} faces are sheets of no solid body", model.face_count),
                      "export the part as a solid");
-  job.proof = proof_facets(facets, job.scene.accept);
+  job.proof = proof_facets(model, facets, job.scene.accept);
   const double edge_mm = edge_chord(job.scene.accept);
-  if (job.proof.mesh == nullptr && facets.under->edge_mm > edge_mm) facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
+  if (job.proof.mesh == nullptr && facets.under->edge_mm > edge_mm)
+    facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
   diagnostics.note(
       "cad-read", where,
       fmt::format("{} bodies, {} faces; unit {} = {:g} mm; measured on the faces themselves, "

@@ -58,8 +58,8 @@ struct StockSettings {
 
 /// Limits of the surface that are not given do not count; scenes of surface blocks have 10.5 and 1 by
 /// default. The counts hold for every job: above 0 only where the scene writes so.
-/// Of a gouge, and of leftover material, where [accept] has no limit of them, um: no finish and no facets are so
-/// coarse.
+/// Of a gouge, and of leftover material, where [accept] has no limit of them, um: no finish and no facets are
+/// so coarse.
 inline constexpr double kGougeAllowed = 100.0, kExcessAllowed = 100.0;
 
 struct AcceptLimits {

@@ -1,6 +1,8 @@
 #include "sim/run/prove_part.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "base/units.h"
 #include "proof/gouge_bound.h"
@@ -80,7 +82,8 @@ void take_gouges(const proof::GougeBound& proven, double slack_mm, double limit_
              *surface.gouge_bound))
     surface.gouge_bottom = proven.bottom;
   add_found(surface.gouges,
-            {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, proven.sweep, 0, 0, proven.bottom}, limit_um);
+            {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, proven.sweep, 0, 0, proven.bottom},
+            limit_um);
 }
 
 void take_leftover(const proof::LeftoverBound& proven, double slack_mm, double limit_um,
@@ -95,40 +98,91 @@ void take_leftover(const proof::LeftoverBound& proven, double slack_mm, double l
             {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, stock::kUncut, 0, 0, proven.top}, limit_um);
 }
 
-}  // namespace
+/// How far a design reaches out of a block: nothing that the block lacks lies deeper below the design, for
+/// that far away the design ends.
+double out_of_block(const TriMesh& design, const Box& block) {
+  double most = 0.0;
+  for (const auto& p : design.positions) {
+    const Vec3 at(p[0], p[1], p[2]);
+    most = std::max({most, (block.lower - at).maxCoeff(), (at - block.upper).maxCoeff()});
+  }
+  return most;
+}
 
+/// Whether the part is of the kind that its sweeps and features prove: a body of not too many facets in a
+/// block.
+bool is_provable_body(const Job& job, const stock::RawShape& raw, double slack_mm) {
+  constexpr size_t kMostFacets = 200'000;
+  const AcceptLimits& accept = job.scene.accept;
+  const TriMesh* mesh = job.proof.mesh.get();
+  if (mesh == nullptr || mesh->triangles.size() > kMostFacets || !raw.is_box()) return false;
+  const double gouge_mm = accept.gouge_max_um.value_or(kGougeAllowed) * kMicrometre;
+  const double excess_mm = accept.excess_max_um.value_or(kExcessAllowed) * kMicrometre;
+  return std::min(gouge_mm, excess_mm) > slack_mm && out_of_block(*mesh, raw.box()) < gouge_mm - slack_mm;
+}
+
+bool is_decided(double value_um, const std::optional<measure::Bound>& bound, std::optional<double> limit_um) {
+  return !limit_um || value_um > *limit_um || (bound && bound->um <= *limit_um);
+}
+
+/// What rays have found is told as the distance to the design: columns that lean beside an edge measure more.
+void tell_distances(const proof::SolidDesign& design, measure::SurfaceMetrics& surface) {
+  const auto lower = [&](double& value_um, double distance_mm) {
+    value_um = std::min(value_um, um_from_mm(std::max(0.0, distance_mm) + design.chord_mm()));
+  };
+  if (surface.excess_max_um > 0.0)
+    lower(surface.excess_max_um, design.distance().at(surface.excess_top).distance_mm);
+  if (surface.gouge_max_um > 0.0 && surface.gouge_block != stock::kUncut)
+    lower(surface.gouge_max_um, -design.distance().at(surface.gouge_bottom).distance_mm);
+}
+
+/// The proof of a design that is a body, by its sweeps and its features. False: what is asked for is not
+/// decided.
 bool prove_body(const Job& job, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
   const AcceptLimits& accept = job.scene.accept;
-  const double gouge_um = accept.gouge_max_um.value_or(kGougeAllowed);
-  const double excess_um = accept.excess_max_um.value_or(kExcessAllowed);
   constexpr double kRounding = 2e-6;  // mm: a touch of both proofs
   const double slack = job.proof.chord_mm + main.rays.error_bound_mm + kRounding;
-  if (job.proof.mesh == nullptr || std::min(gouge_um, excess_um) * kMicrometre <= slack) return false;
+  const stock::RawShape& raw = result.stock->raw();
+  if (!is_provable_body(job, raw, slack)) return false;
+  const double gouge_um = accept.gouge_max_um.value_or(kGougeAllowed);
+  const double excess_um = accept.excess_max_um.value_or(accept.scallop_max_um.value_or(kExcessAllowed));
   const RayCutters rays = ray_cutters(job, main);
   const measure::SweepCutters cutters(rays.solids, rays.solid_of);
   const proof::SolidDesign design(*job.proof.mesh, job.proof.chord_mm);
   measure::SurfaceMetrics& surface = main.surface;
+  tell_distances(design, surface);
   progress.begin("prove", 2.0, "sides");
-  const proof::GougeBound gouges =
+  proof::GougeBound gouges =
       proof::bound_gouges({design, main.rays.sweeps, cutters, gouge_um * kMicrometre - slack,
                            surface.gouge_max_um * kMicrometre, progress});
+  gouges.bound_mm = std::max(gouges.bound_mm, out_of_block(*job.proof.mesh, raw.box()));
   progress.advance(1.0);
-  const proof::LeftoverBound leftover =
-      proof::bound_leftover({design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
-                             excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre, progress, 1.0});
-  if (getenv("SWARF_DBG")) fprintf(stderr, "gouge bound %.3f found %.3f rays %.3f at %.4f %.4f %.4f foot %.4f %.4f %.4f sweep %u open %zu; rays bottom %.4f %.4f %.4f\nleftover bound %.3f found %.3f rays %.3f top %.4f %.4f %.4f foot %.4f %.4f %.4f open %zu area %.3f regions %zu parts %zu at %.4f %.4f %.4f facets %zu chord %.3f sweeps %zu\n", gouges.bound_mm*1e3, gouges.found_mm*1e3, surface.gouge_max_um, gouges.bottom.x(), gouges.bottom.y(), gouges.bottom.z(), gouges.foot.x(), gouges.foot.y(), gouges.foot.z(), gouges.sweep, gouges.open, surface.gouge_bottom.x(), surface.gouge_bottom.y(), surface.gouge_bottom.z(), leftover.bound_mm*1e3, leftover.found_mm*1e3, surface.excess_max_um, leftover.top.x(), leftover.top.y(), leftover.top.z(), leftover.foot.x(), leftover.foot.y(), leftover.foot.z(), leftover.open, leftover.open_area_mm2, leftover.regions, leftover.parts, leftover.place.x(), leftover.place.y(), leftover.place.z(), design.facets(), job.proof.chord_mm*1e3, main.rays.sweeps.size());
-  if (!progress.stop_requested()) {
-    take_gouges(gouges, slack, gouge_um, surface);
-    take_leftover(leftover, slack, excess_um, surface);
-    surface.gouge_regions = keep_worst(surface.gouges);
-    surface.excess_regions = keep_worst(surface.excesses);
-    if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
-      surface.scallop_bound = surface.excess_bound;
-  }
+  proof::LeftoverBound leftover;
+  const bool wants_leftover = accept.excess_max_um || accept.scallop_max_um;
+  if (wants_leftover)
+    leftover = proof::bound_leftover({design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
+                                      excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre,
+                                      progress, 1.0});
   progress.end();
-  return !accept.scallop_max_um || surface.scallop_bound.has_value() || progress.stop_requested();
+  if (progress.stop_requested()) return true;
+  take_gouges(gouges, slack, gouge_um, surface);
+  if (wants_leftover) take_leftover(leftover, slack, excess_um, surface);
+  surface.gouge_regions = keep_worst(surface.gouges);
+  surface.excess_regions = keep_worst(surface.excesses);
+  if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
+    surface.scallop_bound = surface.excess_bound;
+  return is_decided(surface.gouge_max_um, surface.gouge_bound, accept.gouge_max_um) &&
+         is_decided(surface.excess_max_um, surface.excess_bound, accept.excess_max_um) &&
+         (!accept.scallop_max_um || surface.scallop_bound.has_value());
 }
+
+/// Two proofs of one part: the lesser bound holds.
+void take_lesser(std::optional<measure::Bound>& bound, const std::optional<measure::Bound>& other) {
+  if (other && (!bound || other->um < bound->um)) bound = other;
+}
+
+}  // namespace
 
 ProofInputs::ProofInputs(const Job& job, const MeasuredPath& path, const stock::Stock& stock)
     : job_(job),
@@ -168,8 +222,13 @@ bool wants_proof(const Job& job) {
 
 void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
-  if (main.dexels.empty()) return;
-  if (prove_body(job, progress, result) || !wants_proof(job)) return;
+  if (main.dexels.empty() || !wants_proof(job)) return;
+  if (prove_body(job, progress, result)) return;
+  // What the sweeps alone do not decide the cells of the design may.
+  const std::optional<measure::Bound> gouge_bound = std::exchange(main.surface.gouge_bound, {}),
+                                      excess_bound = std::exchange(main.surface.excess_bound, {});
+  main.surface.scallop_bound.reset();
+  main.surface.unmeasured_area_mm2 = 0.0;
   progress.begin("prove", static_cast<double>(main.dexels.size()), "surfaces");
   const ProofInputs inputs(job, main, *result.stock);
   if (ranks != nullptr) send_whole_stock(*ranks, *result.stock);
@@ -211,6 +270,8 @@ void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result
                *surface.excess_bound))
       surface.excess_top = worst.excess_top;
   }
+  take_lesser(surface.gouge_bound, gouge_bound);
+  take_lesser(surface.excess_bound, excess_bound);
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   progress.end();

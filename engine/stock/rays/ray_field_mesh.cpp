@@ -288,7 +288,9 @@ void share_areas(RayField& field, const RaysByPlace& near, const RaysOfFacets& l
 }
 
 /// How far apart neighbours are at most.
-double neighbour_reach(const RayField& field) { return 2.0 * kFarthestRay * field.pitch_mm; }
+double neighbour_reach(const RayField& field) {
+  return 2.0 * kFarthestRay * field.pitch_mm;
+}
 
 /// Rays that no third one stands between. `near`: within that reach.
 void find_neighbours(const RayField& field, const RaysByPlace& near, uint32_t ray,
