@@ -22,9 +22,9 @@ double most_over(const ConvexSet& set, const Polytope& body) {
   return most;
 }
 
-bool holds(const ConvexSet& set, const Polytope& body) {
+bool holds(const ConvexSet& set, const Polytope& body, double tolerance_mm) {
   return std::all_of(body.corners.begin(), body.corners.end(),
-                     [&](const Vec3& corner) { return value(set, corner) <= kTouch; });
+                     [&](const Vec3& corner) { return value(set, corner) <= tolerance_mm; });
 }
 
 std::array<Vec3, 3> facet_of(const SolidDesign& design, uint32_t facet) {
@@ -36,7 +36,7 @@ std::array<Vec3, 3> facet_of(const SolidDesign& design, uint32_t facet) {
 
 bool RegionProver::is_closed_by_last(const Polytope& body) {
   for (size_t i = 0; i < last_.size(); ++i) {
-    if (!holds(last_[i].set, body)) continue;
+    if (!holds(last_[i].set, body, kTouch)) continue;
     if (i > 0) std::swap(last_[i], last_[i - 1]);
     return true;
   }
@@ -202,7 +202,8 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
   if (seen.distance_mm <= -radius) return std::nullopt;  // wholly in the design
   const NearerSet nearer{facet_of(in_.design, seen.triangle), region.height};
   const WithinSet within{nearer.facet, above_mm};
-  if (holds(within, part.body) || holds(nearer, part.body)) return std::nullopt;
+  // Places as near to their own feature as to another one stay: nobody else would answer for them.
+  if (holds(within, part.body, kTouch) || holds(nearer, part.body, 0.0)) return std::nullopt;
   const double smallest = std::max(kSmallest, kSmallestShare * above_mm);
   if (radius < smallest || ++region_parts_ > kMostParts) return RegionState::kOpen;
   ConvexSet other = within;

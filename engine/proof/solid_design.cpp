@@ -46,16 +46,22 @@ bool is_needle(const mesh::SignedDistance& design, uint32_t facet) {
   return ab.cross(ac).norm() < kNeedle * std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
 }
 
+/// The facet across a side; its corner that the side has not tells whether the edge stands out.
 Edge edge_of(const mesh::SignedDistance& design, uint32_t facet, size_t place) {
-  const uint32_t across = design.across()[3 * facet + place];
-  if (across >= mesh::SignedDistance::kSeam) return {};
-  const uint32_t other = across / 3;
+  const uint32_t other = design.across()[3 * facet + place];
+  if (other == mesh::SignedDistance::kBorder || other == mesh::SignedDistance::kSeam) return {};
   if (is_needle(design, other) || is_needle(design, facet)) return {};
   const Vec3 &n = design.face_normal(facet), &m = design.face_normal(other);
-  const Vec3 apex = design.corner(other, (across % 3 + 2) % 3);
-  const double above = n.dot(apex - design.corner(facet, place));
   if (n.cross(m).norm() <= kFlatTurn && n.dot(m) > 0.0) return {EdgeKind::kFlat, m};
-  return {above < 0.0 ? EdgeKind::kStandsOut : EdgeKind::kHollow, m};
+  const auto& own = design.mesh().triangles[facet];
+  const uint32_t from = own[place], to = own[(place + 1) % 3];
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t vertex = design.mesh().triangles[other][k];
+    if (vertex == from || vertex == to) continue;
+    const double above = n.dot(design.corner(other, k) - design.corner(facet, place));
+    return {above < 0.0 ? EdgeKind::kStandsOut : EdgeKind::kHollow, m};
+  }
+  return {};
 }
 
 Vec3 turned(const Vec3& from, const Vec3& to, double share) {
@@ -183,7 +189,7 @@ std::vector<FeatureCell> SolidDesign::cells() const {
       edges[to].push_back((a - b).normalized());
       // What lies across is not known: a quarter turn from either side holds any wedge.
       if (edge.kind == EdgeKind::kUnknown) add_wedge(a, b, n, (b - a).normalized().cross(n), cells);
-      const bool is_first = distance_.across()[3 * f + k] / 3 > f;
+      const bool is_first = distance_.across()[3 * f + k] > f;
       if (edge.kind == EdgeKind::kStandsOut && is_first) add_wedge(a, b, n, edge.other, cells);
     }
   }
