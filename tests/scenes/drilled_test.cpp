@@ -24,7 +24,7 @@ constexpr double kRadius = 3.4, kCell = 8.0, kTop = 0.0, kBottom = -20.0;
 /// A side of the plate around one hole, up or down: the ring's segments fan out to the corners of a square.
 void add_ring(TriMesh& mesh, double x, double z, bool up) {
   const auto at = [&](int k) {
-    const double angle = 2.0 * M_PI * k / kSides;
+    const double angle = 2.0 * M_PI * (k % kSides) / kSides;
     return Vec3(x + kRadius * std::cos(angle), kRadius * std::sin(angle), z);
   };
   const auto corner = [&](int q) {
@@ -56,7 +56,7 @@ TriMesh drilled_plate(int holes) {
     add_ring(mesh, x, kBottom, false);
     for (int k = 0; k < kSides; ++k) {
       const auto at = [&](int i) {
-        const double angle = 2.0 * M_PI * i / kSides;
+        const double angle = 2.0 * M_PI * (i % kSides) / kSides;
         return Vec3(x + kRadius * std::cos(angle), kRadius * std::sin(angle), 0.0);
       };
       wall(at(k + 1), at(k));

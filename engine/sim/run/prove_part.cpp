@@ -1,6 +1,7 @@
 #include "sim/run/prove_part.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -86,16 +87,30 @@ void take_gouges(const proof::GougeBound& proven, double slack_mm, double limit_
             limit_um);
 }
 
+/// The block of the listed region that is nearest to a place; kUncut where none is listed.
+uint32_t block_near(const std::vector<measure::Region>& regions, const Vec3& place) {
+  uint32_t block = stock::kUncut;
+  double least = std::numeric_limits<double>::infinity();
+  for (const measure::Region& region : regions) {
+    const double distance = (region.place - place).norm();
+    if (distance >= least) continue;
+    least = distance;
+    block = region.block;
+  }
+  return block;
+}
+
 void take_leftover(const proof::LeftoverBound& proven, double slack_mm, double limit_um,
                    measure::SurfaceMetrics& surface) {
   surface.excess_bound = {um_from_mm(proven.bound_mm + slack_mm), proven.place};
   surface.unmeasured_area_mm2 += proven.open_area_mm2;
   drop_beyond(surface.excesses, surface.excess_bound->um);
-  if (settle(surface.excess_max_um, surface.excess_block, um_from_mm(proven.found_mm), stock::kUncut,
+  const uint32_t block = block_near(surface.excesses, proven.foot);
+  if (settle(surface.excess_max_um, surface.excess_block, um_from_mm(proven.found_mm), block,
              *surface.excess_bound))
     surface.excess_top = proven.top;
-  add_found(surface.excesses,
-            {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, stock::kUncut, 0, 0, proven.top}, limit_um);
+  add_found(surface.excesses, {um_from_mm(proven.found_mm), 0.0, 0.0, proven.foot, block, 0, 0, proven.top},
+            limit_um);
 }
 
 /// How far a design reaches out of a block: nothing that the block lacks lies deeper below the design, for
