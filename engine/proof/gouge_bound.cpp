@@ -197,7 +197,7 @@ class DeepSearch {
     for (double step = 0.5 / kParts; step > 1e-5; step *= 0.5) {
       for (bool better = true; better;) {
         better = false;
-        const Vec2 middle = at;
+        const Vec2 middle(at.x(), at.y());
         for (const Vec2& d : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1), Vec2(1, -1), Vec2(-1, 1)})
           better = try_at(middle + step * d) || better;
       }
