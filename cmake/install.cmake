@@ -13,7 +13,8 @@ if(TARGET swarf_mpi)
 endif()
 install(DIRECTORY assets/machines assets/posts assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
-install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)
+install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program
+  PATTERN "*.py" EXCLUDE PATTERN "generator" EXCLUDE)
 install(PROGRAMS assets/cluster/batch_array.sh DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets/cluster" COMPONENT program)
 install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 
