@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <unordered_map>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
 #include "brep/facet_chord.h"
+#include "brep/straight_lines.h"
 
 namespace swarf::brep {
 namespace {
@@ -34,6 +35,8 @@ struct Middle {
   Vec3 point = Vec3::Zero();
   double sagitta_mm = 0.0;
   uint32_t vertex = 0xffffffffu;  ///< once it is made
+  int surface = -1;               ///< of the facets beside the side; kBorder: of two of them
+  static constexpr int kBorder = -2;
 };
 
 using SideKey = std::pair<uint32_t, uint32_t>;
@@ -60,33 +63,33 @@ class Refiner {
           facet.sides[k] = {on.edges[k], 0.0,
                             static_cast<double>(under_.edges[static_cast<size_t>(on.edges[k])].size() - 1)};
       }
-      facets_.push_back(facet);
+      // Of the border that is a pole the library makes facets with two corners in one place.
+      const std::array<uint32_t, 3>& c = facet.corners;
+      if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) facets_.push_back(facet);
     }
+    for (const surface::SurfacePtr& surface : under_.surfaces) straight_.push_back(straight_lines(*surface));
+    find_poles();
     find_sides();
   }
 
   /// False: more than `most` triangles.
   bool refine(size_t most) {
-    constexpr int kMostRounds = 12;
+    constexpr int kMostRounds = 24;
     for (int round = 0; round < kMostRounds; ++round) {
+      turn_sides();
       if (!halve_sides()) return facets_.size() <= most;
       if (facets_.size() > most) return false;
     }
     return true;
   }
 
-  /// Whether a facet lies against its face: an edge bulged across another one nearby.
-  bool is_folded() const {
-    constexpr double kNeedle = 1e-9;  // mm2; rounding turns smaller ones
-    return std::any_of(facets_.begin(), facets_.end(), [&](const FineFacet& facet) {
-      const Vec3& a = points_[facet.corners[0]];
-      const Vec3 across = (points_[facet.corners[1]] - a).cross(points_[facet.corners[2]] - a);
-      if (across.norm() < kNeedle) return false;
-      const Vec2 middle = (facet.uv[0] + facet.uv[1] + facet.uv[2]) / 3.0;
-      const surface::Derivatives d = surface_of(facet).derivatives(middle.x(), middle.y());
-      const Vec3 normal = d.Su.cross(d.Sv);
-      return normal.norm() > 0.0 && turned_[static_cast<size_t>(facet.surface)] * across.dot(normal) < 0.0;
-    });
+  /// Whether a facet lies against its face: an edge bulged across another one nearby. Such needles take the
+  /// other diagonal where both halves then lie right.
+  bool stays_folded() {
+    std::vector<uint32_t> folded;
+    for (uint32_t n = 0; n < facets_.size(); ++n)
+      if (is_folded(facets_[n])) folded.push_back(n);
+    return std::any_of(folded.begin(), folded.end(), [&](uint32_t n) { return !unfold(n); });
   }
 
   FineFacets result() const {
@@ -115,12 +118,52 @@ class Refiner {
   void find_sides() {
     turned_.assign(under_.surfaces.size(), 0.0);
     for (const FineFacet& facet : facets_) {
-      const Vec3& a = points_[facet.corners[0]];
-      const Vec3 across = (points_[facet.corners[1]] - a).cross(points_[facet.corners[2]] - a);
-      const Vec2 middle = (facet.uv[0] + facet.uv[1] + facet.uv[2]) / 3.0;
-      const surface::Derivatives d = surface_of(facet).derivatives(middle.x(), middle.y());
-      turned_[static_cast<size_t>(facet.surface)] += across.dot(d.Su.cross(d.Sv));
+      const surface::Derivatives d = at_middle(facet);
+      turned_[static_cast<size_t>(facet.surface)] += across(facet).dot(d.Su.cross(d.Sv));
     }
+  }
+
+  /// The parameters of its corners; a pole has the free one of the middle of the others.
+  std::array<Vec2, 3> uv_of(const FineFacet& facet) const {
+    std::array<Vec2, 3> uv = facet.uv;
+    for (size_t k = 0; k < 3 && !poles_.empty(); ++k) {
+      const auto pole = poles_.find({facet.surface, facet.corners[k]});
+      if (pole == poles_.end()) continue;
+      uv[k][pole->second] = 0.5 * (uv[(k + 1) % 3][pole->second] + uv[(k + 2) % 3][pole->second]);
+    }
+    return uv;
+  }
+
+  surface::Derivatives at_middle(const FineFacet& facet) const {
+    const std::array<Vec2, 3> uv = uv_of(facet);
+    const Vec2 middle = (uv[0] + uv[1] + uv[2]) / 3.0;
+    return surface_of(facet).derivatives(middle.x(), middle.y());
+  }
+
+  /// Vertices where a whole border of a surface's square is one point: any parameter along it is theirs.
+  void find_poles() {
+    constexpr double kPole = 1e-6;
+    for (const FineFacet& facet : facets_) {
+      for (size_t k = 0; k < 3 && is_curved(facet); ++k) {
+        const Vec2& uv = facet.uv[k];
+        if (uv.minCoeff() > 0.0 && uv.maxCoeff() < 1.0) continue;
+        const surface::Derivatives d = surface_of(facet).derivatives(uv.x(), uv.y());
+        const double u = d.Su.norm(), v = d.Sv.norm();
+        if (u < kPole * v) poles_[{facet.surface, facet.corners[k]}] = 0;
+        if (v < kPole * u) poles_[{facet.surface, facet.corners[k]}] = 1;
+      }
+    }
+  }
+
+  /// The parameters at both ends of a side. A pole has the free one of the other end.
+  std::array<Vec2, 2> ends_of(const FineFacet& facet, size_t k) const {
+    std::array<Vec2, 2> ends{facet.uv[k], facet.uv[(k + 1) % 3]};
+    if (poles_.empty()) return ends;
+    for (size_t i = 0; i < 2; ++i) {
+      const auto pole = poles_.find({facet.surface, facet.corners[(k + i) % 3]});
+      if (pole != poles_.end()) ends[i][pole->second] = ends[1 - i][pole->second];
+    }
+    return ends;
   }
 
   bool is_curved(const FineFacet& facet) const {
@@ -131,15 +174,28 @@ class Refiner {
   }
   double strays(const FineFacet& facet) const {
     if (!is_curved(facet)) return 0.0;
-    return distance_bound(surface_of(facet), facet.uv,
-                          {points_[facet.corners[0]], points_[facet.corners[1]], points_[facet.corners[2]]},
-                          chord_mm_);
+    const std::array<Vec3, 3> at{points_[facet.corners[0]], points_[facet.corners[1]],
+                                 points_[facet.corners[2]]};
+    if (const std::optional<int>& along = straight_[static_cast<size_t>(facet.surface)])
+      return straight_bound(surface_of(facet), *along, uv_of(facet), at);
+    for (size_t k = 0; k < 3 && !poles_.empty(); ++k) {
+      if (!poles_.contains({facet.surface, facet.corners[k]})) continue;
+      // What lies under a facet at a pole has four corners in the parameters.
+      const Vec2 &b = facet.uv[(k + 1) % 3], &c = facet.uv[(k + 2) % 3];
+      const Vec2 over_b = ends_of(facet, k)[0], over_c = ends_of(facet, (k + 2) % 3)[1];
+      return std::max(distance_bound(surface_of(facet), {b, c, over_b}, at, chord_mm_),
+                      distance_bound(surface_of(facet), {c, over_c, over_b}, at, chord_mm_));
+    }
+    return distance_bound(surface_of(facet), facet.uv, at, chord_mm_);
   }
 
   /// The parameters at a share of a side.
   Vec2 along(const FineFacet& facet, size_t k, double share) const {
     const Piece& piece = facet.sides[k];
-    if (piece.edge == kNoEdge) return facet.uv[k] + share * (facet.uv[(k + 1) % 3] - facet.uv[k]);
+    if (piece.edge == kNoEdge) {
+      const std::array<Vec2, 2> ends = ends_of(facet, k);
+      return ends[0] + share * (ends[1] - ends[0]);
+    }
     const surface::EdgePlaces& places = under_.edges[static_cast<size_t>(piece.edge)];
     const double at =
         std::clamp(piece.from + share * (piece.to - piece.from), 0.0, static_cast<double>(places.size() - 1));
@@ -152,6 +208,16 @@ class Refiner {
     if (!is_curved(facet)) return {1, 0.5 * (a + b), 0.0};
     const surface::Surface& surface = surface_of(facet);
     Middle middle{facet.sides[k].edge != kNoEdge ? 3 : 2};
+    const std::optional<int>& lines = straight_[static_cast<size_t>(facet.surface)];
+    if (lines) {
+      const std::array<Vec2, 2> ends = ends_of(facet, k);
+      middle.sagitta_mm = straight_bound(surface, *lines, ends[0], ends[1]);
+      if (facet.sides[k].edge == kNoEdge) {
+        const Vec2 uv = 0.5 * (ends[0] + ends[1]);
+        middle.point = surface.point(uv.x(), uv.y());
+        return middle;
+      }
+    }
     for (const double share : {0.25, 0.5, 0.75}) {
       const Vec2 uv = along(facet, k, share).cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
       const Vec3 p = surface.point(uv.x(), uv.y());
@@ -176,24 +242,160 @@ class Refiner {
     return uv;
   }
 
-  /// One round; false where no side strays too far.
+  /// Two facets that share a side, and which side it is of each.
+  struct Pair {
+    std::array<uint32_t, 2> facet{};
+    std::array<size_t, 2> side{};
+  };
+
+  static double area_of(const std::array<Vec2, 3>& uv) {
+    const Vec2 ab = uv[1] - uv[0], ac = uv[2] - uv[0];
+    return ab.x() * ac.y() - ab.y() * ac.x();
+  }
+
+  /// Along the normal of a facet, twice its area long, mm2.
+  Vec3 across(const FineFacet& facet) const {
+    const Vec3& a = points_[facet.corners[0]];
+    return (points_[facet.corners[1]] - a).cross(points_[facet.corners[2]] - a);
+  }
+
+  /// The two facets of a pair on the other diagonal; false: there is none.
+  bool other_diagonal(const Pair& pair, std::array<FineFacet, 2>& made) const {
+    const FineFacet &f = facets_[pair.facet[0]], &g = facets_[pair.facet[1]];
+    const size_t a = pair.side[0], b = (a + 1) % 3, c = (a + 2) % 3;
+    const size_t i = pair.side[1], j = (i + 1) % 3, d = (i + 2) % 3;
+    // Across a seam the parameters differ.
+    constexpr double kSame = 1e-8;
+    if (f.surface != g.surface) return false;
+    if ((f.uv[a] - g.uv[j]).norm() > kSame || (f.uv[b] - g.uv[i]).norm() > kSame) return false;
+    made[0] = {f.surface,
+               {f.corners[a], g.corners[d], f.corners[c]},
+               {f.uv[a], g.uv[d], f.uv[c]},
+               {g.sides[j], Piece{}, f.sides[c]}};
+    made[1] = {f.surface,
+               {g.corners[d], f.corners[b], f.corners[c]},
+               {g.uv[d], f.uv[b], f.uv[c]},
+               {g.sides[d], f.sides[b], Piece{}}};
+    return true;
+  }
+
+  /// Whether the other diagonal strays less, with facets that do not overlap.
+  bool turned(const Pair& pair, std::array<FineFacet, 2>& made) const {
+    if (!other_diagonal(pair, made)) return false;
+    const FineFacet &f = facets_[pair.facet[0]], &g = facets_[pair.facet[1]];
+    constexpr double kFlat = 0.02, kNearer = 1.0 - 1e-3;
+    const double whole = area_of(uv_of(f)) + area_of(uv_of(g));
+    const Vec3 outward = across(f) + across(g);
+    for (const FineFacet& one : made)
+      if (!(area_of(uv_of(one)) / whole > kFlat) || !(across(one).dot(outward) > 0.0)) return false;
+    const double strays = middle_of(f, pair.side[0]).sagitta_mm;
+    return strays > chord_mm_ && middle_of(made[0], 1).sagitta_mm < kNearer * strays;
+  }
+
+  bool is_folded(const FineFacet& facet) const {
+    constexpr double kNeedle = 1e-9;  // mm2; rounding turns smaller ones
+    const Vec3 out = across(facet);
+    if (out.norm() < kNeedle) return false;
+    const surface::Derivatives d = at_middle(facet);
+    const Vec3 normal = d.Su.cross(d.Sv);
+    return normal.norm() > 0.0 && turned_[static_cast<size_t>(facet.surface)] * out.dot(normal) < 0.0;
+  }
+
+  bool has_side(uint32_t a, uint32_t b) const {
+    for (uint32_t n = 0; n < facets_.size(); ++n)
+      if (side_of(n, key_of(a, b)) != 3) return true;
+    return false;
+  }
+
+  /// Turns a folded facet and one beside it; false: none serves.
+  bool unfold(uint32_t n) {
+    if (!is_folded(facets_[n])) return true;
+    for (size_t k = 0; k < 3; ++k) {
+      const SideKey key = key_of(facets_[n].corners[k], facets_[n].corners[(k + 1) % 3]);
+      for (uint32_t other = 0; other < facets_.size(); ++other) {
+        const size_t side = other == n ? 3 : side_of(other, key);
+        std::array<FineFacet, 2> made;
+        if (side == 3 || !other_diagonal({{n, other}, {k, side}}, made)) continue;
+        if (is_folded(made[0]) || is_folded(made[1]) || has_side(made[0].corners[1], made[0].corners[2]))
+          continue;
+        facets_[n] = made[0];
+        facets_[other] = made[1];
+        return true;
+      }
+    }
+    return false;
+  }
+
+  size_t side_of(uint32_t facet, const SideKey& key) const {
+    const std::array<uint32_t, 3>& corners = facets_[facet].corners;
+    for (size_t k = 0; k < 3; ++k)
+      if (key_of(corners[k], corners[(k + 1) % 3]) == key) return k;
+    return 3;
+  }
+
+  /// Two facets beside a side within a curved surface take the other diagonal where that strays less, until
+  /// no side strays less so: between rims that run side by side, nothing needs to be halved then.
+  void turn_sides() {
+    constexpr uint32_t kNone = 0xffffffffu;
+    std::map<SideKey, std::array<uint32_t, 2>> beside;
+    std::vector<SideKey> open;
+    for (uint32_t n = 0; n < facets_.size(); ++n) {
+      for (size_t k = 0; k < 3 && is_curved(facets_[n]); ++k) {
+        const SideKey key = key_of(facets_[n].corners[k], facets_[n].corners[(k + 1) % 3]);
+        const auto [it, is_new] = beside.try_emplace(key, std::array<uint32_t, 2>{n, kNone});
+        if (!is_new) it->second[1] = n;
+        if (is_new && facets_[n].sides[k].edge == kNoEdge) open.push_back(key);
+      }
+    }
+    while (!open.empty()) {
+      const SideKey key = open.back();
+      open.pop_back();
+      const auto found = beside.find(key);
+      if (found == beside.end() || found->second[1] == kNone) continue;
+      const Pair pair{found->second, {side_of(found->second[0], key), side_of(found->second[1], key)}};
+      std::array<FineFacet, 2> made;
+      if (pair.side[0] == 3 || pair.side[1] == 3 || !turned(pair, made)) continue;
+      if (!beside.try_emplace(key_of(made[0].corners[1], made[0].corners[2]), pair.facet).second) continue;
+      beside.erase(key);
+      for (size_t n = 0; n < 2; ++n) {
+        facets_[pair.facet[n]] = made[n];
+        for (size_t k = 0; k < 3; ++k) {
+          const SideKey side = key_of(made[n].corners[k], made[n].corners[(k + 1) % 3]);
+          std::array<uint32_t, 2>& of = beside.at(side);
+          if (of[0] == pair.facet[1 - n] && of[1] != pair.facet[n]) of[0] = pair.facet[n];
+          if (of[1] == pair.facet[1 - n] && of[0] != pair.facet[n]) of[1] = pair.facet[n];
+          if (made[n].sides[k].edge == kNoEdge) open.push_back(side);
+        }
+      }
+    }
+  }
+
+  /// One round; false where no side strays too far. Those between two surfaces go first.
   bool halve_sides() {
     std::map<SideKey, Middle> middles;
     for (const FineFacet& facet : facets_) {
       for (size_t k = 0; k < 3; ++k) {
         const Middle one = middle_of(facet, k);
         Middle& best = middles[key_of(facet.corners[k], facet.corners[(k + 1) % 3])];
+        const int surface =
+            best.surface == -1 || best.surface == facet.surface ? facet.surface : Middle::kBorder;
+        const double sagitta_mm = std::max(best.sagitta_mm, one.sagitta_mm);
         if (one.rank > best.rank) best = one;
-        if (one.rank == best.rank) best.sagitta_mm = std::max(best.sagitta_mm, one.sagitta_mm);
+        best.surface = surface;
+        best.sagitta_mm = sagitta_mm;
       }
     }
     most_sagitta_ = 0.0;
+    const bool on_borders = std::any_of(middles.begin(), middles.end(), [&](const auto& one) {
+      return one.second.surface == Middle::kBorder && one.second.sagitta_mm > chord_mm_;
+    });
     bool any = false;
     for (auto& [key, middle] : middles) {
       if (!(middle.sagitta_mm > chord_mm_)) {
         most_sagitta_ = std::max(most_sagitta_, middle.sagitta_mm);
         continue;
       }
+      if (on_borders && middle.surface != Middle::kBorder) continue;
       any = true;
       middle.vertex = static_cast<uint32_t>(points_.size());
       points_.push_back(middle.point);
@@ -262,7 +464,9 @@ class Refiner {
   double chord_mm_, most_sagitta_ = 0.0;
   std::vector<Vec3> points_;
   std::vector<FineFacet> facets_;
-  std::vector<double> turned_;  ///< of each surface; its sign counts
+  std::vector<std::optional<int>> straight_;       ///< of each surface: straight_lines()
+  std::vector<double> turned_;                     ///< of each surface; its sign counts
+  std::map<std::pair<int, uint32_t>, int> poles_;  ///< surface and vertex; which parameter is free there
 };
 
 }  // namespace
@@ -272,7 +476,7 @@ FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most) {
   for (const surface::FacetOnSurface& on : facets.under->facets)
     if (on.surface == kNoEdge) return {};
   Refiner refiner(facets, chord_mm);
-  if (!refiner.refine(most) || refiner.is_folded()) return {};
+  if (!refiner.refine(most) || refiner.stays_folded()) return {};
   return refiner.result();
 }
 
