@@ -64,6 +64,31 @@ Span span_of(const stock::Sweep& sweep, double t0, double t1, double lever_mm) {
   return span;
 }
 
+/// The directions that parted the tool from facets before: those beside them are parted by the same.
+class Directions {
+ public:
+  /// Whether one of them serves; it is tried first the next time.
+  template <typename Parts>
+  bool any(const Parts& parts) {
+    for (size_t i = 0; i < count_; ++i) {
+      if (!parts(kept_[i])) continue;
+      std::rotate(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(i),
+                  kept_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      return true;
+    }
+    return false;
+  }
+  void keep(const Vec3& direction) {
+    count_ = std::min(count_ + 1, kept_.size());
+    std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
+    kept_.front() = direction;
+  }
+
+ private:
+  std::array<Vec3, 8> kept_;
+  size_t count_ = 0;
+};
+
 class SpanBody {
  public:
   SpanBody(const collision::RevolvedSolid& solid, const Span& span) : solid_(solid), span_(span) {
@@ -82,20 +107,26 @@ class SpanBody {
     const Vec3 wide = Vec3::Constant(span_.stray_mm);
     return {box.lower.cwiseMin(other.lower) - wide, box.upper.cwiseMax(other.upper) + wide};
   }
-  bool is_clear_of(const std::array<Vec3, 3>& facet, const Vec3& normal) const {
+  /// Tries the directions given, then looks for another one and puts it among them.
+  bool is_clear_of(const std::array<Vec3, 3>& facet, const Vec3& normal, Directions& directions) const {
     const double plane = normal.dot(facet[0]);
     if (reach(-normal) <= -plane) return true;
-    for (const Vec3& d : {span_.ends[0].axis_W, Vec3(-span_.ends[0].axis_W), normal}) {
-      const double least = std::min({d.dot(facet[0]), d.dot(facet[1]), d.dot(facet[2])});
-      if (reach(d) <= least) return true;
-    }
+    const auto parts = [&](const Vec3& d) {
+      return reach(d) <= std::min({d.dot(facet[0]), d.dot(facet[1]), d.dot(facet[2])});
+    };
+    for (const Vec3& d : {span_.ends[0].axis_W, Vec3(-span_.ends[0].axis_W), normal})
+      if (parts(d)) return true;
+    if (directions.any(parts)) return true;
     collision::ConvexView tool, flat;
     for (size_t k = 0; k < 3; ++k) flat.corners[k] = flat.home[k] = facet[k];
     tool.solid = &solid_;
     tool.poses = 2;
     tool.pose[0] = &poses_[0];
     tool.pose[1] = &poses_[1];
-    return collision::convex_distance(flat, tool, span_.stray_mm).lower > span_.stray_mm;
+    const collision::ConvexDistance apart = collision::convex_distance(flat, tool, span_.stray_mm);
+    if (!(apart.lower > span_.stray_mm)) return false;
+    directions.keep(apart.normal);
+    return true;
   }
   /// A point of it, far from the tip.
   Vec3 top() const { return span_.ends[0].tip_W + solid_.corners.back().y() * span_.ends[0].axis_W; }
@@ -144,13 +175,15 @@ class Passage {
     found_.clear();
     design_.find(body.box(), found_);
     for (const uint32_t facet : found_)
-      if (!body.is_clear_of(corners_of(design_, facet), design_.distance().face_normal(facet))) return facet;
+      if (!body.is_clear_of(corners_of(design_, facet), design_.distance().face_normal(facet), directions_))
+        return facet;
     if (design_.distance().at(body.top()).distance_mm < 0.0) return kInside;
     return std::nullopt;
   }
 
   const SolidDesign& design_;
   std::vector<uint32_t> found_;
+  Directions directions_;
 };
 
 struct Deep {

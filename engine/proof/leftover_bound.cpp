@@ -58,6 +58,7 @@ struct TaskResult {
   double found_mm = 0.0;
   Vec3 top = Vec3::Zero(), foot = Vec3::Zero();
   size_t parts = 0;
+  double open_mm = 0.0;  ///< nothing of what stays open far from the design is farther off it
 };
 
 class LeftoverSearch {
@@ -68,17 +69,25 @@ class LeftoverSearch {
   LeftoverBound run() {
     result_.regions = cells_.size();
     double above = std::max(in_.limit_mm, raised(in_.known_mm));
+    // The same in all rounds: a region that one round has proven ends there.
+    top_mm_ = std::max(kTopVoxels * in_.stock.voxel_mm() + in_.stock_bound_mm, 1.2 * above);
     std::vector<uint32_t> todo(cells_.size());
     for (uint32_t n = 0; n < todo.size(); ++n) todo[n] = n;
     for (int round = 0; round < kRounds && !in_.progress.stop_requested(); ++round) {
-      top_mm_ = std::max(kTopVoxels * in_.stock.voxel_mm() + in_.stock_bound_mm, 1.2 * above);
       open_.clear();
+      far_open_mm_ = 0.0;
+      far_open_ = 0;
       std::vector<uint32_t> left = prove_cells(todo, above, round);
       const bool far = !prove_far(above);
       if (left.empty() && !far) {
         result_.bound_mm = above;
         finish_open();
         return result_;
+      }
+      if (result_.found_mm > 0.0) {
+        RegionProver prover(in_, index_);
+        prover.look_around(result_.top, result_.found_mm);
+        take({prover.found_mm(), prover.top(), prover.foot(), 0});
       }
       above = std::max(above, raised(result_.found_mm));
       todo = std::move(left);
@@ -144,11 +153,15 @@ class LeftoverSearch {
       const Vec3 low = box.lower + side * Vec3(static_cast<double>(n % nx), static_cast<double>(n / nx % ny),
                                                static_cast<double>(n / nx / ny));
       RegionProver prover(in_, index_);
-      const RegionState state = prove_cube(prover, low, side, std::max(above, top_mm_), above);
+      double open_mm = 0.0;
+      const RegionState state = prove_cube(prover, low, side, std::max(above, top_mm_), above, open_mm);
       states[n] = static_cast<uint8_t>(state);
-      told[n] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts()};
+      told[n] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts(), open_mm};
     });
-    for (const TaskResult& one : told) take(one);
+    for (const TaskResult& one : told) {
+      take(one);
+      far_open_mm_ = std::max(far_open_mm_, one.open_mm);
+    }
     bool clear = true;
     for (const uint8_t state : states) {
       clear = clear && state != static_cast<uint8_t>(RegionState::kLeftover);
@@ -158,7 +171,8 @@ class LeftoverSearch {
   }
 
   /// `within`: nearer places are proven by the features' regions.
-  RegionState prove_cube(RegionProver& prover, const Vec3& low, double side, double within, double above) {
+  RegionState prove_cube(RegionProver& prover, const Vec3& low, double side, double within, double above,
+                         double& open_mm) {
     const double half = 0.5 * side, radius = half * std::sqrt(3.0);
     const Vec3 centre = low + Vec3::Constant(half);
     if (in_.stock.air_radius_mm(centre) - in_.stock_bound_mm >= radius) return RegionState::kProven;
@@ -167,12 +181,15 @@ class LeftoverSearch {
     if (side < kLeast * in_.stock.voxel_mm()) {
       const Region cube{box_polytope({low, low + Vec3::Constant(side)}),
                         {Vec3::Zero(), Vec3::Zero(), within}};
-      return prover.prove(cube, above);
+      const RegionState state = prover.prove(cube, above);
+      if (state == RegionState::kOpen)
+        open_mm = std::max(open_mm, in_.design.distance().at(centre).distance_mm + radius);
+      return state;
     }
     RegionState worst = RegionState::kProven;
     for (int k = 0; k < 8; ++k) {
       const Vec3 corner = low + half * Vec3(k & 1, k >> 1 & 1, k >> 2);
-      const RegionState state = prove_cube(prover, corner, half, within, above);
+      const RegionState state = prove_cube(prover, corner, half, within, above, open_mm);
       if (state == RegionState::kLeftover) return state;
       if (state == RegionState::kOpen) worst = state;
     }
@@ -185,8 +202,8 @@ class LeftoverSearch {
       result_.open_area_mm2 += area_of(cells_[n]);
       result_.place = cells_[n].feet.front();
     }
-    if (open_.empty()) return;
-    result_.bound_mm = std::max(result_.bound_mm, top_mm_);
+    result_.bound_mm = std::max(result_.bound_mm, far_open_mm_);
+    if (!open_.empty()) result_.bound_mm = std::max(result_.bound_mm, top_mm_);
   }
 
   const LeftoverQuestion& in_;
@@ -194,7 +211,8 @@ class LeftoverSearch {
   std::vector<FeatureCell> cells_;
   double top_mm_ = 0.0;
   std::vector<uint32_t> open_;
-  size_t far_open_ = 0;
+  size_t far_open_ = 0;       ///< of the last round
+  double far_open_mm_ = 0.0;  ///< nothing of them is farther off the design
   LeftoverBound result_;
 };
 

@@ -126,6 +126,29 @@ void RegionProver::climb(const Vec3& x, double height_mm) {
   foot_ = there.foot;
 }
 
+void RegionProver::look_around(const Vec3& x, double height_mm) {
+  constexpr double kLeast = 1e-5;  // mm
+  Vec3 at = x;
+  double most = height_mm;
+  for (double step = height_mm; step > kLeast; step *= 0.5) {
+    for (bool better = true; better;) {
+      better = false;
+      for (int n = 0; n < 27; ++n) {
+        const Vec3 y = at + step * Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const double distance = in_.design.distance().at(y).distance_mm;
+        if (!(distance > most + kLeast) || !is_leftover(y)) continue;
+        most = distance;
+        at = y;
+        better = true;
+      }
+    }
+  }
+  if (!(most > found_mm_)) return;
+  found_mm_ = most;
+  top_ = at;
+  foot_ = in_.design.distance().at(at).foot;
+}
+
 /// In two, by a plane a little inside the border of a set that holds the centre; without one across the
 /// longest way.
 void RegionProver::split(Part& part, const ConvexSet* by, const Vec3& centre) {

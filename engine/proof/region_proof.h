@@ -29,6 +29,9 @@ class RegionProver {
   /// `above_mm`: lower leftover is allowed. kLeftover: found() tells the farthest so far.
   RegionState prove(const Region& region, double above_mm);
 
+  /// From a leftover place to others farther off the design, as long as a step to any side finds one.
+  void look_around(const Vec3& x, double height_mm);
+
   double found_mm() const { return found_mm_; }
   const Vec3& top() const { return top_; }
   const Vec3& foot() const { return foot_; }

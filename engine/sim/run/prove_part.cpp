@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "proof/gouge_bound.h"
 #include "proof/leftover_bound.h"
+#include "proof/missing_bound.h"
 #include "sim/run/result.h"
 #include "sim/run/tile_ranks.h"
 
@@ -173,16 +174,13 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
                            surface.gouge_max_um * kMicrometre, progress});
   gouges.bound_mm = std::max(gouges.bound_mm, out_of_block(*job.proof.mesh, raw.box()));
   progress.advance(1.0);
-  proof::LeftoverBound leftover;
-  const bool wants_leftover = accept.excess_max_um || accept.scallop_max_um;
-  if (wants_leftover)
-    leftover = proof::bound_leftover({design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
-                                      excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre,
-                                      progress, 1.0});
+  const proof::LeftoverBound leftover = proof::bound_leftover(
+      {design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
+       excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre, progress, 1.0});
   progress.end();
   if (progress.stop_requested()) return true;
   take_gouges(gouges, slack, gouge_um, surface);
-  if (wants_leftover) take_leftover(leftover, slack, excess_um, surface);
+  take_leftover(leftover, slack, excess_um, surface);
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
@@ -192,9 +190,44 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
          (!accept.scallop_max_um || surface.scallop_bound.has_value());
 }
 
-/// Two proofs of one part: the lesser bound holds.
-void take_lesser(std::optional<measure::Bound>& bound, const std::optional<measure::Bound>& other) {
+/// What the raw stock lacks within the design, where it is no block: pockets, slits and closed voids of it.
+void prove_raw(const Job& job, Progress& progress, Result& result) {
+  const stock::RawShape& raw = result.stock->raw();
+  if (raw.is_box() || !job.design_mesh) return;
+  const bool is_fine = job.proof.mesh != nullptr;
+  const double facets_mm = job.design_under ? job.design_under->chord_mm : 0.0;
+  const proof::SolidDesign design(is_fine ? *job.proof.mesh : *job.design_mesh,
+                                  is_fine ? job.proof.chord_mm : facets_mm);
+  measure::SurfaceMetrics& surface = result.main.surface;
+  const double limit_mm = job.scene.accept.gouge_max_um.value_or(kGougeAllowed) * kMicrometre;
+  progress.begin("prove raw stock", 1.0, "bodies");
+  const proof::MissingBound proven = proof::bound_missing(
+      {design, raw.mesh_around(), std::max(0.5 * limit_mm, limit_mm - design.chord_mm()), progress});
+  progress.end();
+  if (progress.stop_requested()) return;
+  if (surface.gouge_bound)
+    raise(surface.gouge_bound, {um_from_mm(proven.bound_mm + design.chord_mm()), proven.place});
+  const double found_um = um_from_mm(proven.found_mm);
+  if (found_um > surface.missing_max_um) {
+    surface.missing_max_um = found_um;
+    surface.missing_place = proven.foot;
+  }
+  if (!(found_um > surface.gouge_max_um)) return;
+  surface.gouge_max_um = found_um;
+  surface.gouge_block = stock::kUncut;
+  surface.gouge_bottom = proven.place;
+  add_found(surface.gouges, {found_um, 0.0, 0.0, proven.foot, stock::kUncut, 0, 0, proven.place},
+            um_from_mm(limit_mm));
+  surface.gouge_regions = keep_worst(surface.gouges);
+}
+
+/// Two proofs of one part: the lesser bound holds, and what is told beyond it was nothing.
+void take_lesser(std::optional<measure::Bound>& bound, const std::optional<measure::Bound>& other,
+                 double& value_um, std::vector<measure::Region>& regions) {
   if (other && (!bound || other->um < bound->um)) bound = other;
+  if (!bound) return;
+  value_um = std::min(value_um, bound->um);
+  drop_beyond(regions, bound->um);
 }
 
 }  // namespace
@@ -235,10 +268,13 @@ bool wants_proof(const Job& job) {
   return job.has_design() && (accept.gouge_max_um || accept.excess_max_um || accept.scallop_max_um);
 }
 
-void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
-  MeasuredPath& main = result.main;
-  if (main.dexels.empty() || !wants_proof(job)) return;
+namespace {
+
+/// By sweeps and features where the part is a body, and by the cells of the design where that does not
+/// decide.
+void prove_design(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
   if (prove_body(job, progress, result)) return;
+  MeasuredPath& main = result.main;
   // What the sweeps alone do not decide the cells of the design may.
   const std::optional<measure::Bound> gouge_bound = std::exchange(main.surface.gouge_bound, {}),
                                       excess_bound = std::exchange(main.surface.excess_bound, {});
@@ -285,11 +321,20 @@ void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result
                *surface.excess_bound))
       surface.excess_top = worst.excess_top;
   }
-  take_lesser(surface.gouge_bound, gouge_bound);
-  take_lesser(surface.excess_bound, excess_bound);
+  take_lesser(surface.gouge_bound, gouge_bound, surface.gouge_max_um, surface.gouges);
+  take_lesser(surface.excess_bound, excess_bound, surface.excess_max_um, surface.excesses);
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   progress.end();
+}
+
+}  // namespace
+
+void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
+  MeasuredPath& main = result.main;
+  if (main.dexels.empty()) return;
+  if (wants_proof(job)) prove_design(job, ranks, progress, result);
+  if (!progress.stop_requested()) prove_raw(job, progress, result);
 }
 
 }  // namespace swarf::sim
