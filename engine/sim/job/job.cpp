@@ -366,7 +366,7 @@ TriMesh load_design_mesh(const Job& job, Diagnostics& diagnostics) {
 
 /// Rays find what the proof decides: about so many of them over the whole design.
 double pitch_of(const TriMesh& mesh) {
-  constexpr double kRays = 40'000.0, kFinest = 0.2, kStep = 0.05;  // mm
+  constexpr double kRays = 20'000.0, kFinest = 0.2, kStep = 0.05;  // mm
   double area = 0.0;
   for (const auto& t : mesh.triangles) {
     const auto corner = [&](size_t k) {
