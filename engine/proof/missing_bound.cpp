@@ -56,6 +56,7 @@ class MissingSearch {
     result.place = middle_of(corners_of(blocked.front()));
     const std::vector<uint32_t> beyond = blocked_at(high, blocked);
     if (!beyond.empty()) {
+      if (beyond.size() < blocked.size()) result.bound_mm = high;  // of those that are clear there
       look_for_deepest(beyond, result);
       return result;
     }
