@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/parallel.h"
-#include "collision/convex_distance.h"
 #include "measure/sweep_index.h"
+#include "proof/sweep_passage.h"
 #include "proof/tool_body.h"
 #include "stock/contact/convex_contact.h"
 
@@ -18,9 +19,6 @@ namespace swarf::proof {
 namespace {
 
 constexpr size_t kSweepsPerTask = 32;
-/// A turning sweep is not divided below this share of its time.
-constexpr double kShortest = 1.0 / 256.0;
-
 /// Bodies of one cutter that lie within one depth of it: for each piece, the ways to reduce it.
 using CutterBodies = std::vector<std::vector<collision::RevolvedSolid>>;
 
@@ -30,161 +28,10 @@ CutterBodies bodies_of(const stock::CutterSolid& cutter, double g_mm) {
   return bodies;
 }
 
-Pose pose_of(const ToolPose& tool) {
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), tool.axis_W).toRotationMatrix();
-  pose.translation() = tool.tip_W;
-  return pose;
-}
-
-/// A piece of a sweep: both ends, and how far what lies between strays from the hull of both.
-struct Span {
-  std::array<ToolPose, 2> ends;
-  double stray_mm = 0.0;
-  bool turns = false;
-};
-
-/// Angle between two axes, rad.
-double turn_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-Span span_of(const stock::Sweep& sweep, double t0, double t1, double lever_mm) {
-  const double turn = turn_between(sweep.start.axis_W, sweep.end.axis_W);
-  const auto at = [&](double t) -> ToolPose {
-    const Vec3 tip = sweep.start.tip_W + t * (sweep.end.tip_W - sweep.start.tip_W);
-    if (turn == 0.0) return {tip, sweep.start.axis_W};
-    const Vec3 axis = std::sin((1.0 - t) * turn) * sweep.start.axis_W + std::sin(t * turn) * sweep.end.axis_W;
-    return {tip, axis.normalized()};
-  };
-  Span span{{at(t0), at(t1)}, 0.0, turn > 0.0};
-  if (!span.turns) return span;
-  const double part = turn * (t1 - t0);
-  span.stray_mm = part * part * lever_mm / 8.0 + stock::motion_bound(sweep, lever_mm);
-  return span;
-}
-
-/// The directions that parted the tool from facets before: those beside them are parted by the same.
-class Directions {
- public:
-  /// Whether one of them serves; it is tried first the next time.
-  template <typename Parts>
-  bool any(const Parts& parts) {
-    for (size_t i = 0; i < count_; ++i) {
-      if (!parts(kept_[i])) continue;
-      std::rotate(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(i),
-                  kept_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      return true;
-    }
-    return false;
-  }
-  void keep(const Vec3& direction) {
-    count_ = std::min(count_ + 1, kept_.size());
-    std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
-    kept_.front() = direction;
-  }
-
- private:
-  std::array<Vec3, 8> kept_;
-  size_t count_ = 0;
-};
-
-class SpanBody {
- public:
-  SpanBody(const collision::RevolvedSolid& solid, const Span& span) : solid_(solid), span_(span) {
-    for (size_t i = 0; i < 2; ++i) {
-      poses_[i] = pose_of(span.ends[i]);
-      placed_[i] = {span.ends[i].tip_W, span.ends[i].axis_W, solid.corners};
-    }
-  }
-  /// Greatest d . x over the hull of both ends, widened by the stray; d of length 1.
-  double reach(const Vec3& d) const {
-    return std::max(d.dot(support(placed_[0], d)), d.dot(support(placed_[1], d))) + span_.stray_mm;
-  }
-  Box box() const {
-    Box box = bounds(placed_[0]);
-    const Box other = bounds(placed_[1]);
-    const Vec3 wide = Vec3::Constant(span_.stray_mm);
-    return {box.lower.cwiseMin(other.lower) - wide, box.upper.cwiseMax(other.upper) + wide};
-  }
-  /// Tries the directions given, then looks for another one and puts it among them.
-  bool is_clear_of(const std::array<Vec3, 3>& facet, const Vec3& normal, Directions& directions) const {
-    const double plane = normal.dot(facet[0]);
-    if (reach(-normal) <= -plane) return true;
-    const auto parts = [&](const Vec3& d) {
-      return reach(d) <= std::min({d.dot(facet[0]), d.dot(facet[1]), d.dot(facet[2])});
-    };
-    for (const Vec3& d : {span_.ends[0].axis_W, Vec3(-span_.ends[0].axis_W), normal})
-      if (parts(d)) return true;
-    if (directions.any(parts)) return true;
-    collision::ConvexView tool, flat;
-    for (size_t k = 0; k < 3; ++k) flat.corners[k] = flat.home[k] = facet[k];
-    tool.solid = &solid_;
-    tool.poses = 2;
-    tool.pose[0] = &poses_[0];
-    tool.pose[1] = &poses_[1];
-    const collision::ConvexDistance apart = collision::convex_distance(flat, tool, span_.stray_mm);
-    if (!(apart.lower > span_.stray_mm)) return false;
-    directions.keep(apart.normal);
-    return true;
-  }
-  /// A point of it, far from the tip.
-  Vec3 top() const { return span_.ends[0].tip_W + solid_.corners.back().y() * span_.ends[0].axis_W; }
-
- private:
-  const collision::RevolvedSolid& solid_;
-  const Span& span_;
-  std::array<Pose, 2> poses_;
-  std::array<collision::RevolvedSolid, 2> placed_;
-};
-
 std::array<Vec3, 3> corners_of(const SolidDesign& design, uint32_t facet) {
   return {design.distance().corner(facet, 0), design.distance().corner(facet, 1),
           design.distance().corner(facet, 2)};
 }
-
-/// What a sweep meets: a facet, or kInside where it lies in the design without meeting one.
-constexpr uint32_t kInside = 0xffffffffu;
-using Meeting = std::optional<uint32_t>;
-
-class Passage {
- public:
-  explicit Passage(const SolidDesign& design) : design_(design) {}
-
-  /// The first facet that keeps the body of the sweep from being clear; nothing: it is clear.
-  Meeting meets(const stock::Sweep& sweep, const collision::RevolvedSolid& solid) {
-    double lever = std::abs(solid.corners.back().y());
-    for (const Vec2& corner : solid.corners) lever = std::max(lever, corner.norm());
-    std::vector<std::array<double, 2>> spans{{0.0, 1.0}};
-    while (!spans.empty()) {
-      const auto [t0, t1] = spans.back();
-      spans.pop_back();
-      const Span span = span_of(sweep, t0, t1, lever);
-      const Meeting met = meets(SpanBody(solid, span));
-      if (!met) continue;
-      if (!span.turns || t1 - t0 < kShortest) return met;
-      const double middle = 0.5 * (t0 + t1);
-      spans.push_back({middle, t1});
-      spans.push_back({t0, middle});
-    }
-    return std::nullopt;
-  }
-
- private:
-  Meeting meets(const SpanBody& body) {
-    found_.clear();
-    design_.find(body.box(), found_);
-    for (const uint32_t facet : found_)
-      if (!body.is_clear_of(corners_of(design_, facet), design_.distance().face_normal(facet), directions_))
-        return facet;
-    if (design_.distance().at(body.top()).distance_mm < 0.0) return kInside;
-    return std::nullopt;
-  }
-
-  const SolidDesign& design_;
-  std::vector<uint32_t> found_;
-  Directions directions_;
-};
 
 struct Deep {
   double depth_mm = 0.0;
@@ -357,7 +204,7 @@ class GougeSearch {
     std::vector<Meeting> met(sweeps.size());
     parallel_chunks(sweeps.size(), kSweepsPerTask, [&](size_t begin, size_t end) {
       if (in_.progress.stop_requested()) return;
-      Passage passage(in_.design);
+      SweepPassage passage(in_.design);
       for (size_t i = begin; i < end; ++i) {
         const uint32_t n = sweeps[i].sweep;
         for (const auto& ways : bodies.at(&in_.cutters[n])) {
@@ -390,7 +237,7 @@ class GougeSearch {
       const Blocked& one = blocked[begin * step];
       const DeepSearch search(in_.design, in_.sweeps[one.sweep], in_.cutters[one.sweep]);
       std::vector<uint32_t> near;
-      in_.design.find(measure::sweep_box(in_.sweeps[one.sweep], in_.cutters[one.sweep]), near);
+      in_.design.tree().find(measure::sweep_box(in_.sweeps[one.sweep], in_.cutters[one.sweep]), near);
       deep[begin] = search.under(one.facet);
       constexpr size_t kFacets = 64;
       for (size_t i = 0; i < std::min(kFacets, near.size()); ++i) {

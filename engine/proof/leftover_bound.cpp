@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "base/parallel.h"
@@ -64,7 +65,10 @@ struct TaskResult {
 class LeftoverSearch {
  public:
   explicit LeftoverSearch(const LeftoverQuestion& in)
-      : in_(in), index_(in.sweeps, in.cutters), cells_(in.design.cells()) {}
+      : in_(in), index_(in.sweeps, in.cutters), cells_(in.design.cells()) {
+    const stock::RawShape& raw = in.stock.raw();
+    if (!raw.is_box()) raw_ = std::make_unique<SolidDesign>(raw.mesh_around(), 0.0);
+  }
 
   LeftoverBound run() {
     result_.regions = cells_.size();
@@ -85,7 +89,7 @@ class LeftoverSearch {
         return result_;
       }
       if (result_.found_mm > 0.0) {
-        RegionProver prover(in_, index_);
+        RegionProver prover(in_, index_, raw_.get());
         prover.look_around(result_.top, result_.found_mm);
         take({prover.found_mm(), prover.top(), prover.foot(), 0});
       }
@@ -111,7 +115,7 @@ class LeftoverSearch {
       const size_t count = std::min(kSlice, tasks - first);
       parallel_chunks(count, 1, [&](size_t begin, size_t) {
         const size_t task = first + begin;
-        RegionProver prover(in_, index_);
+        RegionProver prover(in_, index_, raw_.get());
         for (size_t i = task * kCellsPerTask; i < std::min(todo.size(), (task + 1) * kCellsPerTask); ++i) {
           if (top_mm_ <= above) continue;
           states[i] = prover.prove(region_of(cells_[todo[i]], above, top_mm_), above);
@@ -152,7 +156,7 @@ class LeftoverSearch {
       if (in_.progress.stop_requested()) return;
       const Vec3 low = box.lower + side * Vec3(static_cast<double>(n % nx), static_cast<double>(n / nx % ny),
                                                static_cast<double>(n / nx / ny));
-      RegionProver prover(in_, index_);
+      RegionProver prover(in_, index_, raw_.get());
       double open_mm = 0.0;
       const RegionState state = prove_cube(prover, low, side, std::max(above, top_mm_), above, open_mm);
       states[n] = static_cast<uint8_t>(state);
@@ -209,6 +213,7 @@ class LeftoverSearch {
   const LeftoverQuestion& in_;
   measure::SweepIndex index_;
   std::vector<FeatureCell> cells_;
+  std::unique_ptr<const SolidDesign> raw_;  ///< facets that hold the raw stock; null where it is a box
   double top_mm_ = 0.0;
   std::vector<uint32_t> open_;
   size_t far_open_ = 0;       ///< of the last round

@@ -128,7 +128,7 @@ class MissingSearch {
     const Box box{moved[0].cwiseMin(moved[1]).cwiseMin(moved[2]),
                   moved[0].cwiseMax(moved[1]).cwiseMax(moved[2])};
     near.clear();
-    in_.design.find(box, near);
+    in_.design.tree().find(box, near);
     return std::all_of(near.begin(), near.end(), [&](uint32_t n) {
       const mesh::SignedDistance& design = in_.design.distance();
       const Corners other{design.corner(n, 0), design.corner(n, 1), design.corner(n, 2)};

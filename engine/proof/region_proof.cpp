@@ -32,6 +32,31 @@ std::array<Vec3, 3> facet_of(const SolidDesign& design, uint32_t facet) {
           design.distance().corner(facet, 2)};
 }
 
+/// Whether all corners of one lie on or beyond a plane of the other.
+template <typename Corners>
+bool lies_beyond(const Corners& corners, const Vec3& normal, double plane) {
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Vec3& p) { return normal.dot(p) >= plane - kTouch; });
+}
+
+/// Whether the plane of the facet, of a face of the body, or the way of its feature parts them. A false
+/// answer costs work alone.
+bool is_parted(const Polytope& body, const std::array<Vec3, 3>& facet, const Vec3& normal) {
+  const double plane = normal.dot(facet[0]);
+  if (lies_beyond(body.corners, normal, plane) || lies_beyond(body.corners, -normal, -plane)) return true;
+  const Vec3 middle = body.centre();
+  return std::any_of(body.faces.begin(), body.faces.end(), [&](const std::vector<uint16_t>& face) {
+    const Vec3 &a = body.corners[face[0]], &b = body.corners[face[1]], &c = body.corners[face[2]];
+    Vec3 out = (b - a).cross(c - a);
+    const double length = out.norm();
+    if (!(length > 0.0)) return false;
+    out /= out.dot(a - middle) < 0.0 ? -length : length;
+    double reach = -std::numeric_limits<double>::infinity();
+    for (const Vec3& corner : body.corners) reach = std::max(reach, out.dot(corner));
+    return lies_beyond(facet, out, reach);
+  });
+}
+
 }  // namespace
 
 bool RegionProver::is_closed_by_last(const Polytope& body) {
@@ -62,6 +87,14 @@ bool RegionProver::is_beyond_raw(const Polytope& body, const Vec3& centre, doubl
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& corner : body.corners) least = std::min(least, seen.normal.dot(corner));
   return extent.greatest <= least + kTouch;
+}
+
+/// Drops the facets of the raw stock that do not cross the part.
+void RegionProver::keep_crossing_raw(Part& part) const {
+  if (part.is_root) raw_->tree().find(part.body.box(), part.raw_facets);
+  std::erase_if(part.raw_facets, [&](uint32_t n) {
+    return is_parted(part.body, facet_of(*raw_, n), raw_->distance().face_normal(n));
+  });
 }
 
 void RegionProver::find_candidates(const Polytope& body, const Vec3& centre, double radius) {
@@ -149,12 +182,16 @@ void RegionProver::look_around(const Vec3& x, double height_mm) {
   foot_ = in_.design.distance().at(at).foot;
 }
 
-/// In two, by a plane a little inside the border of a set that holds the centre; without one across the
-/// longest way.
+/// In two, by a plane a little inside the border of a set that holds the centre (at the border, where that is
+/// a plane); without one across the longest way.
 void RegionProver::split(Part& part, const ConvexSet* by, const Vec3& centre) {
   Vec3 normal = Vec3::UnitZ();
   double offset = 0.0;
-  if (by != nullptr) {
+  const BeyondSet* plane = by == nullptr ? nullptr : std::get_if<BeyondSet>(by);
+  if (plane != nullptr) {
+    normal = plane->normal;
+    offset = plane->offset;
+  } else if (by != nullptr) {
     const Vec3* worst = nullptr;
     double most = -std::numeric_limits<double>::infinity();
     for (const Vec3& corner : part.body.corners) {
@@ -184,7 +221,7 @@ void RegionProver::split(Part& part, const ConvexSet* by, const Vec3& centre) {
   }
   auto [below, above] = cut_by_plane(part.body, normal, offset);
   for (Polytope* half : {&above, &below})
-    if (!half->is_empty()) stack_.push_back({std::move(*half), part.near, false});
+    if (!half->is_empty()) stack_.push_back({std::move(*half), part.near, part.raw_facets, false});
 }
 
 std::optional<RegionState> RegionProver::look_at(Part& part, const Region& region, double above_mm) {
@@ -192,6 +229,10 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
   const Vec3 centre = part.body.centre();
   const double radius = part.body.radius(centre);
   if (is_beyond_raw(part.body, centre, radius)) return std::nullopt;
+  if (raw_ != nullptr) {
+    keep_crossing_raw(part);
+    if (part.raw_facets.empty() && raw_->distance().at(centre).distance_mm > 0.0) return std::nullopt;
+  }
   if (part.is_root) {
     find_candidates(part.body, centre, radius);
     for (uint32_t n = 0; n < candidates_.size(); ++n) part.near.push_back(n);
@@ -242,6 +283,10 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
   offer(nearer);
   const stock::RawPoint raw = in_.stock.raw().at(centre);
   if (raw.distance_mm > -kTouch) offer(BeyondSet{raw.normal, raw.normal.dot(raw.foot)});
+  for (const uint32_t n : part.raw_facets) {
+    const Vec3& normal = raw_->distance().face_normal(n);
+    offer(BeyondSet{normal, normal.dot(raw_->distance().corner(n, 0))});
+  }
   if (best == nullptr && seen.distance_mm > above_mm && raw.distance_mm < -kTouch) {
     climb(centre, seen.distance_mm);
     return RegionState::kLeftover;
@@ -253,7 +298,7 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
 RegionState RegionProver::prove(const Region& region, double above_mm) {
   stack_.clear();
   region_parts_ = 0;
-  stack_.push_back({region.body, {}, true});
+  stack_.push_back({region.body, {}, {}, true});
   while (!stack_.empty()) {
     Part part = std::move(stack_.back());
     stack_.pop_back();

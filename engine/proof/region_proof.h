@@ -23,8 +23,9 @@ enum class RegionState { kProven, kLeftover, kOpen };
 /// Proves regions one after another. For one thread; the order of the regions decides how fast it is.
 class RegionProver {
  public:
-  RegionProver(const LeftoverQuestion& question, const measure::SweepIndex& index)
-      : in_(question), index_(index) {}
+  /// `raw`: facets that hold the raw stock; null where it is a box.
+  RegionProver(const LeftoverQuestion& question, const measure::SweepIndex& index, const SolidDesign* raw)
+      : in_(question), index_(index), raw_(raw) {}
 
   /// `above_mm`: lower leftover is allowed. kLeftover: found() tells the farthest so far.
   RegionState prove(const Region& region, double above_mm);
@@ -45,12 +46,14 @@ class RegionProver {
   };
   struct Part {
     Polytope body;
-    std::vector<uint32_t> near;  ///< of candidates_
+    std::vector<uint32_t> near;        ///< of candidates_
+    std::vector<uint32_t> raw_facets;  ///< of the raw stock, that may cross it
     bool is_root = false;
   };
 
   bool is_closed_by_last(const Polytope& body);
   bool is_beyond_raw(const Polytope& body, const Vec3& centre, double radius) const;
+  void keep_crossing_raw(Part& part) const;
   void find_candidates(const Polytope& body, const Vec3& centre, double radius);
   std::optional<RegionState> look_at(Part& part, const Region& region, double above_mm);
   void split(Part& part, const ConvexSet* by, const Vec3& centre);
@@ -60,6 +63,7 @@ class RegionProver {
 
   const LeftoverQuestion& in_;
   const measure::SweepIndex& index_;
+  const SolidDesign* raw_;
   std::vector<Candidate> candidates_;
   std::deque<Candidate> last_;  ///< that closed a region, the newest first
   std::vector<Part> stack_;

@@ -2,23 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <utility>
 
 namespace swarf::proof {
 namespace {
-
-namespace bg = boost::geometry;
-using TreePoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using TreeBox = bg::model::box<TreePoint>;
-using TreeEntry = std::pair<TreeBox, uint32_t>;
-
-TreeBox tree_box(const Box& box) {
-  return {TreePoint(box.lower.x(), box.lower.y(), box.lower.z()),
-          TreePoint(box.upper.x(), box.upper.y(), box.upper.z())};
-}
 
 /// Facets that turn by less than this hang together as one plane; rad. The wedge between them is thinner than
 /// a touch.
@@ -27,11 +15,6 @@ constexpr double kThinCone = 1e-6;
 /// A facet less high than this has a normal that the rounding of its corners turns, mm: what its neighbours'
 /// edges carry is then not known from it.
 constexpr double kNeedle = 2e-4;
-
-Box facet_box(const mesh::SignedDistance& design, uint32_t facet) {
-  const Vec3 a = design.corner(facet, 0), b = design.corner(facet, 1), c = design.corner(facet, 2);
-  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-}
 
 /// Sides of a facet as its wedges see them.
 enum class EdgeKind { kFlat, kHollow, kStandsOut, kUnknown };
@@ -153,24 +136,8 @@ void add_vertex(const mesh::SignedDistance& design, const Vec3& vertex, std::vec
 
 }  // namespace
 
-struct SolidDesign::Tree {
-  bg::index::rtree<TreeEntry, bg::index::rstar<16>> boxes;
-};
-
-SolidDesign::SolidDesign(const TriMesh& mesh, double chord_mm) : distance_(mesh), chord_mm_(chord_mm) {
-  std::vector<TreeEntry> entries;
-  for (uint32_t n = 0; n < facets(); ++n) entries.emplace_back(tree_box(facet_box(distance_, n)), n);
-  tree_ = std::make_unique<const Tree>(Tree{decltype(Tree::boxes)(entries)});
-}
-
-SolidDesign::~SolidDesign() = default;
-
-void SolidDesign::find(const Box& box, std::vector<uint32_t>& found) const {
-  const size_t first = found.size();
-  for (auto it = tree_->boxes.qbegin(bg::index::intersects(tree_box(box))); it != tree_->boxes.qend(); ++it)
-    found.push_back(it->second);
-  std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
-}
+SolidDesign::SolidDesign(const TriMesh& mesh, double chord_mm)
+    : distance_(mesh), chord_mm_(chord_mm), tree_(distance_) {}
 
 std::vector<FeatureCell> SolidDesign::cells() const {
   std::vector<FeatureCell> cells;

@@ -9,12 +9,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "base/frames.h"
 #include "mesh/signed_distance.h"
 #include "mesh/tri_mesh.h"
+#include "proof/facet_tree.h"
 
 namespace swarf::proof {
 
@@ -28,24 +28,18 @@ class SolidDesign {
  public:
   /// `chord_mm`: no place of the true design is farther from the facets, and none of the facets from it.
   SolidDesign(const TriMesh& mesh, double chord_mm);
-  ~SolidDesign();
-  SolidDesign(const SolidDesign&) = delete;
-  SolidDesign& operator=(const SolidDesign&) = delete;
-
   const mesh::SignedDistance& distance() const { return distance_; }
   double chord_mm() const { return chord_mm_; }
   size_t facets() const { return distance_.mesh().triangles.size(); }
-  /// Appends the facets whose boxes meet `box`, in rising order.
-  void find(const Box& box, std::vector<uint32_t>& found) const;
+  const FacetTree& tree() const { return tree_; }
   /// The regions of all features, wedges and cones divided until their ways turn by no more than kMostTurn.
   std::vector<FeatureCell> cells() const;
   static constexpr double kMostTurn = 0.4;  ///< rad
 
  private:
-  struct Tree;
   mesh::SignedDistance distance_;
   double chord_mm_;
-  std::unique_ptr<const Tree> tree_;
+  FacetTree tree_;
 };
 
 }  // namespace swarf::proof

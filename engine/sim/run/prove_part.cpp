@@ -131,7 +131,7 @@ bool is_provable_body(const Job& job, const stock::RawShape& raw, double slack_m
   constexpr size_t kMostFacets = 200'000;
   const AcceptLimits& accept = job.scene.accept;
   const TriMesh* mesh = job.proof.mesh.get();
-  if (mesh == nullptr || mesh->triangles.size() > kMostFacets || !raw.is_box()) return false;
+  if (mesh == nullptr || mesh->triangles.size() > kMostFacets) return false;
   const double gouge_mm = accept.gouge_max_um.value_or(kGougeAllowed) * kMicrometre;
   const double excess_mm = accept.excess_max_um.value_or(kExcessAllowed) * kMicrometre;
   return std::min(gouge_mm, excess_mm) > slack_mm && out_of_block(*mesh, raw.box()) < gouge_mm - slack_mm;

@@ -8,6 +8,8 @@
 #include "proof/leftover_bound.h"
 #include "proof/polytope.h"
 #include "proof/tool_body.h"
+#include "stock/contact/convex_contact.h"
+#include "stock/sweep/sweep_map.h"
 #include "support/solids.h"
 
 namespace body_proof_test {
@@ -102,6 +104,123 @@ TEST(BodyProof, ABuriedToolIsAGouge) {
   const Proven proven = prove(buried, CutterSolid(1.0, 3.0), 2.0, 10.0);
   EXPECT_GT(proven.gouge.found_mm, 1.0);
   EXPECT_GE(proven.gouge.bound_mm, proven.gouge.found_mm);
+}
+
+/// A round bar along x in flats, radius 20 mm to their corners.
+TriMesh bar(int flats) {
+  TriMesh mesh;
+  const auto count = static_cast<uint32_t>(flats);
+  for (const float x : {-15.0F, 15.0F})
+    for (int k = 0; k < flats; ++k) {
+      const double angle = 2.0 * M_PI * k / flats;
+      mesh.positions.push_back(
+          {x, static_cast<float>(20.0 * std::cos(angle)), static_cast<float>(20.0 * std::sin(angle))});
+    }
+  for (uint32_t k = 0; k < count; ++k) {
+    const uint32_t next = (k + 1) % count;
+    mesh.triangles.push_back({k, next, count + next});
+    mesh.triangles.push_back({k, count + next, count + k});
+    if (k > 0 && next > 0) {
+      mesh.triangles.push_back({0, next, k});
+      mesh.triangles.push_back({count, count + k, count + next});
+    }
+  }
+  return mesh;
+}
+
+/// The end of the tool on the bar, `off_mm` above its round, from one angle to another.
+Sweep round_the_bar(double from, double to, double off_mm) {
+  const auto at = [&](double angle) -> swarf::ToolPose {
+    const Vec3 way(0, std::cos(angle), std::sin(angle));
+    return {(20.0 + off_mm) * way, way};
+  };
+  return {at(from), at(to), 0};
+}
+
+swarf::proof::GougeBound gouge_of(const TriMesh& design, const Sweep& sweep, const CutterSolid& cutter) {
+  const swarf::proof::SolidDesign solid(design, 0.0);
+  const std::vector<Sweep> sweeps{sweep};
+  const swarf::measure::SweepCutters cutters(cutter);
+  const Progress silent;
+  return swarf::proof::bound_gouges({solid, sweeps, cutters, 0.002, 0.0, silent});
+}
+
+TEST(BodyProof, AWideToolTurnsRoundABarWithoutGouging) {
+  // The chord of the tip's way lies 20 (1 - cos 0.0025) = 0.06 um below its ends, which the start is raised by.
+  const CutterSolid cutter(8.0, 30.0);
+  const auto clear = gouge_of(bar(360), round_the_bar(0.3, 0.305, 0.0001), cutter);
+  EXPECT_EQ(clear.open, 0U);
+  const auto deep = gouge_of(bar(360), round_the_bar(0.3, 0.305, -0.0089), cutter);
+  EXPECT_GE(deep.bound_mm, 0.0088);
+  EXPECT_LE(deep.bound_mm, 0.0095);
+  EXPECT_GE(deep.found_mm, 0.0080);
+}
+
+TEST(BodyProof, NoPointOfATurningToolIsDeeperThanTheBound) {
+  std::mt19937 random(411);
+  std::uniform_real_distribution<double> any(-1.0, 1.0), share(0.0, 1.0);
+  swarf::cutter::Cutter ball;
+  ball.shape = swarf::cutter::Shape::kBall;
+  ball.diameter_mm = 6.0;
+  ball.corner_radius_mm = 3.0;
+  const TriMesh block = slotted_block();
+  const swarf::proof::SolidDesign design(block, 0.0);
+  for (int n = 0; n < 60; ++n) {
+    const auto pose = [&](double tilt) -> swarf::ToolPose {
+      return {Vec3(10 * any(random), 6 * any(random), 3.0 * share(random) - 3.5),
+              Vec3(tilt * any(random), tilt * any(random), 1.0).normalized()};
+    };
+    const swarf::ToolPose start = pose(0.6);
+    const Sweep sweep{start,
+                      {start.tip_W + 2.0 * Vec3(any(random), any(random), 0.3 * any(random)),
+                       (start.axis_W + 0.2 * Vec3(any(random), any(random), any(random))).normalized()},
+                      0};
+    const double radius = 3.0, height = 12.0;
+    const CutterSolid cutter = n % 2 == 0 ? CutterSolid(radius, height) : CutterSolid(ball);
+    const swarf::proof::GougeBound told = gouge_of(block, sweep, cutter);
+    const swarf::stock::SweepMap map = swarf::stock::sweep_map(sweep);
+    double deepest = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      const double t = share(random), turn = 2.0 * M_PI * share(random),
+                   z = height * share(random) * share(random);
+      const double rho =
+          n % 2 == 0 ? radius : std::sqrt(std::max(0.0, 9.0 - std::pow(std::min(z, 3.0) - 3.0, 2)));
+      // Where the tool's point is in the work, the axis turning evenly between close ends.
+      const Vec3 home(rho * std::cos(turn), rho * std::sin(turn), z);
+      const Vec3 from = map.R0t.transpose() * home + map.tip0, to = map.R1t.transpose() * home + map.tip1;
+      const Vec3 p = from + t * (to - from);
+      if (swarf::stock::swept_contact(p, map, cutter).distance_mm > 0.0) continue;
+      deepest = std::max(deepest, -design.distance().at(p).distance_mm);
+    }
+    EXPECT_GE(told.bound_mm, deepest - 1e-6)
+        << "seed 411, case " << n << ": " << start.tip_W.transpose() << " / " << start.axis_W.transpose()
+        << " to " << sweep.end.tip_W.transpose() << " / " << sweep.end.axis_W.transpose();
+    EXPECT_GE(told.bound_mm, told.found_mm - 1e-9);
+  }
+}
+
+TEST(BodyProof, ACastPocketNeedsNoCuts) {
+  // The raw stock is the slotted block itself, a mesh; what it has above is milled.
+  const TriMesh cast =
+      swarf::test::towers({-20, 20}, {-15, -5, 5, 15}, -10, [](int, int j) { return j == 1 ? -4.0 : 1.0; });
+  const auto left = [&](double floor_mm) {
+    TriMesh block = swarf::test::towers({-20, 20}, {-15, -5, 5, 15}, -10,
+                                        [&](int, int j) { return j == 1 ? floor_mm : 0.0; });
+    const swarf::proof::SolidDesign design(block, 0.0);
+    Stock stock(swarf::stock::RawShape::of_mesh(cast, "cast"), 0.4);
+    const std::vector<Sweep> rows{along_x(-8, 0, 0), along_x(8, 0, 1)};
+    const CutterSolid cutter(10.0, 20.0);
+    stock.cut(rows, cutter);
+    const swarf::measure::SweepCutters cutters(cutter);
+    Progress silent;
+    return swarf::proof::bound_leftover({design, rows, cutters, stock, 0.0, 0.010, 0.0, silent});
+  };
+  const auto flush = left(-4.0);
+  EXPECT_EQ(flush.open, 0U);
+  EXPECT_EQ(flush.found_mm, 0.0);
+  EXPECT_LE(flush.bound_mm, 0.010);
+  EXPECT_EQ(left(-4.0099).found_mm, 0.0);
+  EXPECT_NEAR(left(-4.02).found_mm, 0.020, 1e-5) << "the casting stands 20 um too high";
 }
 
 TEST(BodyProof, EveryPointOutsideLiesOverItsNearestFeature) {
