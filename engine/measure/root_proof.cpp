@@ -434,10 +434,9 @@ class RootProof {
            bounds.high - bounds.low > kVolumeShare * result_.gouge_found;
   }
 
-  /// One root may take long where the design has few.
+  /// One root may take long where the design has few, and one cell ask for thousands of distances.
   bool is_stopped() {
-    constexpr size_t kCells = 256;  // between two looks
-    if (result_.cells % kCells == 0) stopped_ = stopped_ || input_.progress.stop_requested();
+    stopped_ = stopped_ || input_.progress.stop_requested();
     return stopped_;
   }
 
@@ -465,6 +464,7 @@ class RootProof {
     // Bounds above the height up to which sweeps were looked for need all of them: the root is begun anew.
     if (highest_seen_ > reach_) return;
     ++result_.cells;
+    if (is_stopped()) return;
     // A cell of a mesh asks for distances, which cost as much as many sweeps.
     constexpr size_t kCellOfMesh = 64, kCell = 4;
     result_.work += (input_.field.design != nullptr ? kCellOfMesh : kCell) + cell.end - cell.begin;
@@ -490,7 +490,7 @@ class RootProof {
                         (is_coarse(cell, bounds) && edge > 2.0 * kBorder);
     const bool too_much = result_.work > (breaks_limit() ? budget_.broken : budget_.all);
     result_.cut_short = result_.cut_short || (divide && too_much);
-    if (!divide || too_much || is_stopped()) {
+    if (!divide || too_much) {
       if (gouge_open || excess_open)
         result_.open.push_back({-bounds.low, bounds.high, bounds.skin, cell.shape.area_mm2()});
       close(cell, bounds, probed);

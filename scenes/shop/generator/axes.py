@@ -68,7 +68,8 @@ def ruled_wall_flank():
             c, s = math.cos(angle), math.sin(angle)
             axis = (-math.sin(draft) * c, -math.sin(draft) * s, math.cos(draft))
             normal = (math.cos(draft) * c, math.cos(draft) * s, math.sin(draft))
-            tip = along((x + foot * c, foot * s, -high), axis, -3.0)
+            # The end leans: so far down that its outer side clears the bottom of the block at its corners.
+            tip = along((x + foot * c, foot * s, -high), axis, -8.0)
             return along(tip, normal, t1.d / 2 + out), axis
 
         start, axis = at(0, -math.pi / 2, 30)
