@@ -311,8 +311,8 @@ void print_setups(const std::vector<reports::SetupOutcome>& done, size_t count, 
       std::count_if(done.begin(), done.end(), [](const auto& one) { return one.passes; }));
   const std::string rest =
       done.size() < count ? fmt::format("; {} not run: the whole is not judged", count - done.size()) : "";
-  fmt::print("  {}: {} of {} set-ups pass{}\n  results: {}\n", passed == done.size() ? "PASS" : "FINDINGS",
-             passed, count, rest, folder);
+  const char* const verdict = passed < done.size() ? "FINDINGS" : passed < count ? "STOPPED" : "PASS";
+  fmt::print("  {}: {} of {} set-ups pass{}\n  results: {}\n", verdict, passed, count, rest, folder);
 }
 
 /// All in order; one that fails its checks does not stop the others: they begin with what it has left.

@@ -145,6 +145,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->expected(1)
       ->take_all();
   add_parameter_flag(command, options.overrides);
+  command.add_flag_callback(
+      "--roughing", [&options] { options.overrides.push_back("accept.roughing=true"); },
+      "material may be left above the design: without it, and without accept.excess_max_um, more than 100 um "
+      "fail");
   command
       .add_option("--setup", options.setup,
                   "of a scene with several [[setup]]: run them up to this one (default: all)")

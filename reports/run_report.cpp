@@ -538,6 +538,7 @@ std::string machine_line(const sim::MachineContacts& contacts) {
                         stock->suspects, stock->count(sim::StockVerdict::kContact),
                         stock->count(sim::StockVerdict::kOpen), stock->count(sim::StockVerdict::kClear));
   const collision::PairFindings* const nearest = contacts.nearest();
+  if (contacts.findings.pairs.empty()) return "not looked at: no two bodies move against each other";
   if (nearest == nullptr)
     return line + fmt::format("; none comes nearer than {:g} mm", contacts.near_miss_mm);
   return line + fmt::format("; nearest: {} and {}, {:.3f} mm", contacts.bodies[nearest->a].name,

@@ -65,7 +65,8 @@ struct Facets {
   /// mm. The mesh's own rounding to float is included. Along the edges facets end on chords that the library
   /// keeps within what was asked for at the places it tries.
   double chord_mm = 0.0;
-  bool proven = true;  ///< false: a face has a crease inside, whose facets are held at some places only
+  double strays_mm = 0.0;  ///< the same as a distance, wherever on the facet: less where facets lie askew
+  bool proven = true;      ///< false: a face has a crease inside, whose facets are held at some places only
   /// Where each facet lies on its face; facets across a crease inside a face have no surface.
   surface::UnderFacetsPtr under;
   size_t across_creases = 0;  ///< how many those are

@@ -315,6 +315,7 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only, double 
   facets.mesh.triangles = std::move(made.triangles);
   constexpr double kFloatStep = 0x1.0p-24 * 1.7320508;  // half a step in each of three coordinates
   facets.chord_mm = made.chord_mm + kFloatStep * farthest;
+  facets.strays_mm = made.strays_mm + kFloatStep * farthest;
   facets.proven = made.proven;
   facets.across_creases = made.across_creases;
   made.under.chord_mm = facets.chord_mm;

@@ -193,15 +193,20 @@ bool edge_crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, co
 }
 
 Crossings find_crossings(const SignedDistance& mesh) {
-  std::vector<Crossings> parts(tasks_of(mesh.mesh()));
-  const auto all_pairs = [](uint32_t, uint32_t) { return true; };
-  each_paired(mesh.mesh(), mesh.tree(), all_pairs, facets_cross,
+  return find_crossings(mesh.mesh(), mesh.tree(), [](uint32_t, uint32_t) { return true; });
+}
+
+Crossings find_crossings(const TriMesh& mesh, const MeshDistance& tree,
+                         const std::function<bool(uint32_t, uint32_t)>& asked) {
+  std::vector<Crossings> parts(tasks_of(mesh));
+  each_paired(mesh, tree, asked, facets_cross,
               [&](size_t task, uint32_t t, const std::vector<uint32_t>& met) {
                 Crossings& mine = parts[task];
                 if (mine.pairs == 0) {
                   mine.first = t;
                   mine.second = *std::min_element(met.begin(), met.end());
-                  mine.place = mesh.corner(t, 0);
+                  const auto& p = mesh.positions[mesh.triangles[t][0]];
+                  mine.place = Vec3(p[0], p[1], p[2]);
                 }
                 mine.pairs += met.size();
               });

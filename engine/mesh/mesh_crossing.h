@@ -24,6 +24,9 @@ struct Crossings {
 /// (double with its error bound, then 113 bits).
 /// Parallel; the same result for any number of threads.
 Crossings find_crossings(const SignedDistance& mesh);
+/// Of the pairs of which `asked` says true alone. `tree`: of the mesh, whose vertices are welded or not.
+Crossings find_crossings(const TriMesh& mesh, const MeshDistance& tree,
+                         const std::function<bool(uint32_t, uint32_t)>& asked);
 
 /// All pairs of facets that have a place in common, if only a corner (the lesser number first, ascending),
 /// and some that nearly have, among those of which `asked` says true. `tree`: of the mesh, whose vertices are

@@ -8,6 +8,8 @@
 
 #include "base/parallel.h"
 #include "mesh/mesh_check.h"
+#include "mesh/mesh_crossing.h"
+#include "mesh/mesh_distance.h"
 #include "mesh/mesh_shells.h"
 
 namespace swarf::mesh {
@@ -72,6 +74,31 @@ void check_bodies(const TriMesh& mesh, const std::string& path, Diagnostics& dia
       fmt::format("a body of the {} ({:.3f} mm3, with a facet at ({:.3f}, {:.3f}, {:.3f}) mm) {}", name,
                   std::abs(body->volume_mm3), p.x(), p.y(), p.z(), fault),
       "unite the bodies in the CAD program; the facets of a cavity point into it, those of a body outward");
+}
+
+void check_apart(const TriMesh& mesh, const std::string& path, Diagnostics& diagnostics,
+                 const std::string& name) {
+  const WeldedMesh welded = weld(mesh);
+  const std::vector<Shell> shells = shells_of(welded, facets_across(welded.triangles));
+  if (shells.size() < 2) return;
+  std::vector<uint32_t> shell_of(welded.triangles.size(), 0);
+  for (uint32_t n = 0; n < shells.size(); ++n)
+    for (const uint32_t facet : shells[n].facets) shell_of[facet] = n;
+  TriMesh all;
+  for (const Vec3& p : welded.points)
+    all.positions.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  all.triangles = welded.triangles;
+  const Crossings found = find_crossings(all, MeshDistance(all),
+                                         [&](uint32_t a, uint32_t b) { return shell_of[a] != shell_of[b]; });
+  if (found.pairs == 0) return;
+  const Vec3& p = found.place;
+  diagnostics.error(
+      "mesh-bodies-overlap", {path},
+      fmt::format("two bodies of the {} overlap or lie against each other: {} pairs of facets, the "
+                  "first at ({:.3f}, {:.3f}, {:.3f}) mm",
+                  name, found.pairs, p.x(), p.y(), p.z()),
+      "unite the bodies in the CAD program and export again");
 }
 
 }  // namespace swarf::mesh

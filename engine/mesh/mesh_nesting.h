@@ -29,4 +29,9 @@ std::optional<MisplacedBody> find_misplaced_body(const TriMesh& mesh);
 void check_bodies(const TriMesh& mesh, const std::string& path, Diagnostics& diagnostics,
                   const std::string& name);
 
+/// An error "mesh-bodies-overlap" where shells run through each other, or lie flat against each other: faces
+/// between them are none of the solid. Closed meshes. Parallel, as find_crossings().
+void check_apart(const TriMesh& mesh, const std::string& path, Diagnostics& diagnostics,
+                 const std::string& name);
+
 }  // namespace swarf::mesh

@@ -119,20 +119,25 @@ class Parting {
  public:
   /// `reaches`: known directions, of the body at home.
   Parting(const SpanBody& body, const collision::RevolvedSolid& solid, std::vector<Reach>& reaches)
-      : body_(body), solid_(solid), reaches_(reaches), box_(body.box()) {
+      : body_(body), solid_(solid), reaches_(reaches), box_(body.box()), ends_(body.turns() ? 2 : 1) {
     for (const Reach& reach : reaches) planes_.push_back(plane_of(reach));
   }
 
   bool is_clear(const FacetGroup& group) const {
     if (!do_meet(box_, group.box)) return true;
+    if (body_.least_along(group.normal) >= group.top_mm) return true;
+    // More of them cost more than they save.
+    constexpr size_t kTried = 4;
     const Vec3 middle = 0.5 * (group.box.lower + group.box.upper), half = group.box.upper - middle;
     const auto lies_beyond = [&](const Plane& plane) {
-      return std::all_of(plane.ends.begin(), plane.ends.end(), [&](const SpanBody::Along& end) {
-        return plane.reach_mm <= end.way.dot(middle) - end.way.cwiseAbs().dot(half) + end.offset;
-      });
+      for (size_t i = 0; i < ends_; ++i) {
+        const SpanBody::Along& end = plane.ends[i];
+        if (plane.reach_mm > end.way.dot(middle) - end.way.cwiseAbs().dot(half) + end.offset) return false;
+      }
+      return true;
     };
-    return std::any_of(planes_.begin(), planes_.end(), lies_beyond) ||
-           body_.least_along(group.normal) >= group.top_mm;
+    const auto end = planes_.begin() + static_cast<std::ptrdiff_t>(std::min(kTried, planes_.size()));
+    return std::any_of(planes_.begin(), end, lies_beyond);
   }
 
   bool is_clear(const Corners& facet, const Vec3& normal) {
@@ -162,13 +167,19 @@ class Parting {
   };
 
   Plane plane_of(const Reach& reach) const {
-    return {reach.mm + body_.stray_mm(), {body_.along(reach.direction, 0), body_.along(reach.direction, 1)}};
+    Plane plane{reach.mm + body_.stray_mm(),
+                {body_.along(reach.direction, 0), body_.along(reach.direction, 1)}};
+    // Without a turn both ends see a facet in one direction.
+    if (ends_ == 1) plane.ends[0].offset = std::min(plane.ends[0].offset, plane.ends[1].offset);
+    return plane;
   }
-  static bool lies_beyond(const Plane& plane, const Corners& facet) {
-    return std::all_of(plane.ends.begin(), plane.ends.end(), [&](const SpanBody::Along& end) {
-      return plane.reach_mm <=
-             std::min({end.way.dot(facet[0]), end.way.dot(facet[1]), end.way.dot(facet[2])}) + end.offset;
-    });
+  bool lies_beyond(const Plane& plane, const Corners& facet) const {
+    for (size_t i = 0; i < ends_; ++i) {
+      const SpanBody::Along& end = plane.ends[i];
+      const double least = std::min({end.way.dot(facet[0]), end.way.dot(facet[1]), end.way.dot(facet[2])});
+      if (plane.reach_mm > least + end.offset) return false;
+    }
+    return true;
   }
   template <typename List>
   static void move_to_front(List& list, size_t n) {
@@ -180,6 +191,7 @@ class Parting {
   const collision::RevolvedSolid& solid_;
   std::vector<Reach>& reaches_;
   Box box_;
+  size_t ends_;                ///< of a plane, that count
   std::vector<Plane> planes_;  ///< of reaches_
 };
 

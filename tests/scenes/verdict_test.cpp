@@ -239,7 +239,7 @@ TEST(Verdict, WithoutALimitOfGougesADesignThatTheStockCannotHoldFails) {
                             "nc = \"air.nc\"\ntools = \"T1=6\"\n"
                             "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
                             "[stock]\nvoxel_mm = 0.5\n" +
-                                stock + "[design]\npitch_mm = 2\n" + design);
+                                stock + "[accept]\nroughing = true\n[design]\npitch_mm = 2\n" + design);
     return run_scene((folder / name).string());
   };
   const std::string bar = "cylinder = { base_mm = [0, 0, -20], diameter_mm = 40, length_mm = 20 }\n";
@@ -271,6 +271,55 @@ TEST(Verdict, WithoutALimitOfGougesADesignThatTheStockCannotHoldFails) {
   EXPECT_NE(gouge->at("text").get<std::string>().find("a gouge, 120.000 um about"), std::string::npos)
       << gouge->dump(2);
   EXPECT_EQ(gouge->at("line"), 6) << gouge->dump(2);
+}
+
+/// A plate whose top is faced at the height given: the design's is 0.
+TEST(Verdict, WithoutALimitOfExcessMaterialLeftHighFails) {
+  const fs::path folder = swarf::test::fresh_folder("verdict_left");
+  swarf::test::write_text(folder / "part.obj",
+                          "v -20 -6 -8\nv 20 -6 -8\nv 20 6 -8\nv -20 6 -8\nv -20 -6 0\nv 20 -6 0\nv 20 6 0\n"
+                          "v -20 6 0\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string mesh = "mesh = \"part.obj\"\n",
+                    plane =
+                        "kind = \"plane\"\norigin_mm = [-19, -5, 0]\nalong_u_mm = [38, 0, 0]\n"
+                        "along_v_mm = [0, 10, 0]\n";
+  const auto faced = [&](const char* height, const std::string& design, const std::string& options = "") {
+    swarf::test::write_text(folder / "face.nc",
+                            std::string("G21 G17 G90 G94\nT1 M6\nS5000 M3\nG0 X-35 Y0 Z9\n"
+                                        "G1 Z") +
+                                height + " F2000\nX35\nG0 Z20\nM2\n");
+    swarf::test::write_text(folder / "scene.toml",
+                            "nc = \"face.nc\"\ntools = \"T1=16\"\n"
+                            "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
+                            "stock = { box_mm = [[-20, -6, -8], [20, 6, 1]], voxel_mm = 0.4 }\n"
+                            "[design]\npitch_mm = 1\n" +
+                                design);
+    return run_scene((folder / "scene.toml").string(), options);
+  };
+  for (const std::string& design : {mesh, plane}) {
+    const Judged high = faced("0.5", design);
+    EXPECT_EQ(high.run.exit_code, 1) << high.run.output;
+    EXPECT_EQ(high.outcome("excess"), "fails");
+    const auto told = std::find_if(high.findings.begin(), high.findings.end(),
+                                   [](const json& one) { return one.at("code") == "excess"; });
+    ASSERT_NE(told, high.findings.end()) << high.findings.dump(2);
+    EXPECT_NE(told->at("text").get<std::string>().find("material stands above the design, 500.000 um"),
+              std::string::npos)
+        << told->dump(2);
+    EXPECT_EQ(told->at("line"), 6) << told->dump(2);
+    const Judged rough = faced("0.5", design, "--roughing");
+    EXPECT_EQ(rough.run.exit_code, 0) << rough.run.output;
+    EXPECT_EQ(rough.check("excess").at("reason"), "roughing: material may be left");
+    EXPECT_EQ(faced("0.5", design, "--set accept.excess_max_um=600").outcome("excess"), "holds");
+    const Judged fine = faced("0.09", design);
+    EXPECT_EQ(fine.run.exit_code, 0) << fine.run.output;
+    EXPECT_EQ(fine.outcome("excess"), "not_judged");
+  }
+  const auto both =
+      run_swarf("run " + (folder / "scene.toml").string() +
+                " --roughing --set accept.excess_max_um=600 --no-render -o " + (folder / "both").string());
+  EXPECT_EQ(both.exit_code, 2) << both.output;
+  EXPECT_NE(both.output.find("[accept-contradiction]"), std::string::npos) << both.output;
 }
 
 /// A slot of 3 mm below a plane that is to be whole, as deep as three times the skin of a measuring ray: it

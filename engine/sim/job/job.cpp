@@ -256,20 +256,32 @@ double edge_chord(const AcceptLimits& accept) {
   return std::clamp(kShare * *accept.gouge_max_um * kMicrometre, kLeast, brep::kEdgeChord);
 }
 
-/// Facets of a CAD file for the proof, a fifth of the least limit from the faces. None of free-form parts
-/// that would need too many of them: those are proven on their faces.
-ProofFacets proof_facets(const brep::Model& model, const brep::Facets& facets, const AcceptLimits& accept) {
+/// Facets of a CAD file for its proofs, a fifth of each limit from the faces. None of free-form parts that
+/// would need too many of them: those are proven on their faces.
+void add_proof_facets(const brep::Model& model, const brep::Facets& facets, Job& job) {
   constexpr double kShare = 0.2, kFinest = 2e-5, kCoarsest = 1e-3;
   constexpr double kBaseChord = 0.05, kBaseEdge = 0.02;  // mm: of facets that are refined
-  constexpr size_t kMostFacets = 200'000;
-  const double gouge = accept.gouge_max_um.value_or(kGougeAllowed),
-               excess = accept.excess_max_um.value_or(kExcessAllowed);
-  const double chord = std::clamp(kShare * std::min(gouge, excess) * kMicrometre, kFinest, kCoarsest);
-  brep::FineFacets fine =
-      brep::refine_facets(brep::tessellate(model, kBaseChord, true, kBaseEdge), chord, kMostFacets);
-  if (fine.mesh.triangles.empty()) fine = brep::refine_facets(facets, chord, kMostFacets);
-  if (fine.mesh.triangles.empty()) return {};
-  return {std::make_shared<TriMesh>(std::move(fine.mesh)), fine.chord_mm};
+  const AcceptLimits& accept = job.scene.accept;
+  const auto chord_of = [=](double limit_um) {
+    return std::clamp(kShare * limit_um * kMicrometre, kFinest, kCoarsest);
+  };
+  const double gouge = chord_of(accept.gouge_max_um.value_or(kGougeAllowed)),
+               excess =
+                   chord_of(accept.excess_max_um.value_or(accept.scallop_max_um.value_or(kExcessAllowed)));
+  const brep::Facets coarse = brep::tessellate(model, kBaseChord, true, kBaseEdge);
+  const auto finer = [&](double chord, size_t most) -> ProofFacets {
+    brep::FineFacets fine = brep::refine_facets(coarse, chord, most);
+    if (fine.mesh.triangles.empty()) fine = brep::refine_facets(facets, chord, most);
+    if (fine.mesh.triangles.empty()) return {};
+    return {std::make_shared<TriMesh>(std::move(fine.mesh)), fine.chord_mm};
+  };
+  // Sweeps are looked up in a tree of facets; leftover material is looked for over each of them.
+  constexpr size_t kMostForSweeps = 1'000'000, kMostForRegions = 200'000;
+  constexpr double kAlike = 1.5;
+  job.proof_outside = finer(excess, kMostForRegions);
+  if (job.proof_outside.mesh == nullptr) return;
+  job.proof =
+      excess < kAlike * gouge && gouge < kAlike * excess ? job.proof_outside : finer(gouge, kMostForSweeps);
 }
 
 /// Faces of a part that drives which do not meet: where the widest gap is, and how far the tool sinks into
@@ -320,7 +332,7 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   if (facets.mesh.triangles.empty())
     throw InputError("cad-open", where, fmt::format("{} faces are sheets of no solid body", model.face_count),
                      "export the part as a solid");
-  job.proof = proof_facets(model, facets, job.scene.accept);
+  add_proof_facets(model, facets, job);
   const double edge_mm = edge_chord(job.scene.accept);
   if (job.proof.mesh == nullptr && facets.under->edge_mm > edge_mm)
     facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
@@ -331,7 +343,7 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
                   "beside them on {} facets, from which no face strays by more than {:.3g} um{}; edges "
                   "within {:.2g} um",
                   model.solids.size(), model.face_count, model.unit, model.mm_per_unit,
-                  facets.mesh.triangles.size(), um_from_mm(facets.chord_mm),
+                  facets.mesh.triangles.size(), um_from_mm(facets.strays_mm),
                   facets.proven ? " (proven)" : " (proven but for faces with a crease inside)",
                   um_from_mm(facets.under->edge_mm)));
   if (facets.across_creases > 0)
@@ -406,11 +418,12 @@ void load_design(Job& job, Diagnostics& diagnostics) {
     const Box* box = open ? nullptr : &stock.box_W;
     mesh::check_design_mesh(*mesh, design.mesh_file, box, diagnostics);
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
+    if (!diagnostics.has_errors()) mesh::check_apart(*mesh, design.mesh_file, diagnostics, "design mesh");
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
     if (!design.pitch_given && !job.scene.driven) design.pitch_mm = pitch_of(*mesh);
     job.design_mesh = std::move(mesh);
-    if (job.design_under == nullptr) job.proof = {job.design_mesh, 0.0};
+    if (job.design_under == nullptr) job.proof = job.proof_outside = {job.design_mesh, 0.0};
   }
 }
 

@@ -66,6 +66,7 @@ struct AcceptLimits {
   std::optional<double> scallop_max_um;
   std::optional<double> gouge_max_um;
   std::optional<double> excess_max_um;  ///< material anywhere above the design, ridges included
+  bool roughing = false;                ///< material may be left: none fails without a limit
   int collisions = 0;                   ///< of neck, shank and holder with the stock
   int rapids_in_material = 0;           ///< rapid moves that remove material
   int spindle_wrong = 0;                ///< cuts with the spindle stopped or turning the wrong way
@@ -165,13 +166,13 @@ struct FlankClearance {
   double slide_mm = 0.0, lift_low_mm = 0.0, lift_high_mm = 0.0;
 };
 
-/// Everything that a run needs, loaded and checked; nothing has been written yet.
-/// The design as a closed mesh that the proof of the part takes for it.
+/// The design as a closed mesh that a proof takes for it.
 struct ProofFacets {
   std::shared_ptr<const TriMesh> mesh;  ///< null: the design is no body, or too large for so fine facets
   double chord_mm = 0.0;                ///< the design's faces lie no farther from the facets; 0: they are it
 };
 
+/// Everything that a run needs, loaded and checked; nothing has been written yet.
 struct Job {
   Scene scene;
   machine::MachineScene machine;
@@ -189,7 +190,8 @@ struct Job {
       driven_faces;  ///< of the CAD file that drives; its design_mesh are facets of them
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
   surface::UnderFacetsPtr design_under;        ///< of a CAD file: the faces over the facets of that mesh
-  ProofFacets proof;                           ///< the same body as the proof takes it
+  ProofFacets proof;                           ///< the same body as the proof of gouges takes it
+  ProofFacets proof_outside;                   ///< and the proof of leftover material, whose limit is wider
 
   /// In the order in which they cut; the stock begins with what they have left of the body in Scene::stock.
   std::vector<EarlierSetup> earlier;

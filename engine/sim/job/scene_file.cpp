@@ -167,6 +167,10 @@ void read_accept(ConfigTable table, bool blocks, AcceptLimits& accept) {
     accept.scallop_max_um = table.number("scallop_max_um", kAboveZero, 10.5);
   }
   if (table.has("excess_max_um")) accept.excess_max_um = table.number("excess_max_um", kAboveZero, 1.0);
+  accept.roughing = table.boolean("roughing", false);
+  if (accept.roughing && accept.excess_max_um)
+    throw InputError("accept-contradiction", table.where("roughing"),
+                     "roughing leaves material, and excess_max_um limits it", "write one of the two");
   if (!blocks || table.has("gouge_max_um"))
     accept.gouge_max_um = table.number("gouge_max_um", kAboveZero, 1.0);
   const auto count = [&](const char* key) { return table.integer(key, 0, 1000000, 0); };

@@ -184,6 +184,37 @@ void gouge_without_limit(const Result& result, const char* remedy, Collector& co
       region);
 }
 
+constexpr const char* kExcess = "material stands above the design";
+constexpr const char* kExcessRemedy = "machine this place too, or start from a smaller stock";
+
+/// Without a limit of excess the one place where most is left: of a patch, of what stands on it.
+void excess_without_limit(const Job& job, const Result& result, Collector& collect) {
+  collect.begin("excess");
+  if (collect.check().outcome != Outcome::kFails) return;
+  const measure::SurfaceMetrics& surface = result.main.surface;
+  measure::Region region;
+  region.worst_um = *collect.check().value;
+  region.place = surface.excess_top;
+  region.block = surface.excess_block;
+  const auto highest =
+      std::max_element(result.main.ridges.begin(), result.main.ridges.end(),
+                       [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
+  if (!job.design_mesh && highest != result.main.ridges.end()) {
+    region.place = highest->point;
+    region.block = highest->block_a;
+  }
+  at_region(
+      collect.at_block("excess",
+                       fmt::format("{}, {:.3f} um about ({:.3f}, {:.3f}, {:.3f}) mm; more than the {:g} um "
+                                   "that are allowed where [accept] has no limit",
+                                   kExcess, region.worst_um, region.place.x(), region.place.y(),
+                                   region.place.z(), *collect.check().limit),
+                       std::string(kExcessRemedy) +
+                           "; accept.excess_max_um allows more, --roughing leaves material to others",
+                       result.main.rays.sources, region.block),
+      region);
+}
+
 void region_faults(const Job& job, const Result& result, Collector& collect) {
   const measure::SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
@@ -205,12 +236,11 @@ void region_faults(const Job& job, const Result& result, Collector& collect) {
                   result, collect);
   else
     gouge_without_limit(result, remedy, collect);
-  region_faults(
-      job,
-      {"excess", "material stands above the design", "machine this place too, or start from a smaller stock",
-       nullptr, surface.excesses, accept.excess_max_um,
-       worst(surface.excess_max_um, surface.excess_top, surface.excess_block)},
-      result, collect);
+  if (!accept.excess_max_um) return excess_without_limit(job, result, collect);
+  region_faults(job,
+                {"excess", kExcess, kExcessRemedy, nullptr, surface.excesses, accept.excess_max_um,
+                 worst(surface.excess_max_um, surface.excess_top, surface.excess_block)},
+                result, collect);
 }
 
 void surface_faults(const Job& job, const Result& result, Collector& collect) {

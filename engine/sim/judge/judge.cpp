@@ -94,6 +94,27 @@ void judge_without_limit(const SurfaceMetrics& surface, Check& gouge) {
                              surface.missing_max_um, gouge.reason);
 }
 
+/// Without a limit a part that stands far above its design is none, unless the job leaves material to another
+/// one. Above a patch the stock may stand elsewhere on the same column: what stands on it counts.
+void judge_left_without_limit(const Job& job, const SurfaceMetrics& surface, Check& excess) {
+  const AcceptLimits& accept = job.scene.accept;
+  if (excess.outcome != Outcome::kNotJudged || accept.scallop_max_um) return;
+  if (accept.roughing) {
+    excess.reason = "roughing: material may be left";
+    return;
+  }
+  const double left_um = job.design_mesh ? surface.excess_max_um : surface.scallop_max_um;
+  if (!(left_um > kExcessAllowed)) return;
+  excess.outcome = Outcome::kFails;
+  excess.limit = kExcessAllowed;
+  excess.value = left_um;
+  excess.what = fmt::format("{} {:.3f} um", excess.subject, left_um);
+  excess.reason = fmt::format(
+      "without a limit in [accept] {:g} um are allowed; accept.excess_max_um sets one, --roughing "
+      "(accept.roughing) leaves material",
+      kExcessAllowed);
+}
+
 /// A mesh has faces that the stock brings along: there only excess tells what is missing. A program of blocks
 /// may leave a part of the design to others, unless a scallop limit says that it machines it.
 Check reached_check(const Job& job, const Result& result) {
@@ -125,8 +146,10 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
     deepest.reason = "the stock has no material there: nobody has cut it";
   judge_without_limit(surface, deepest);
   checks.push_back(std::move(deepest));
-  checks.push_back(measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
-                            surface.excess_bound, result.stopped));
+  Check highest = measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
+                           surface.excess_bound, result.stopped);
+  judge_left_without_limit(job, surface, highest);
+  checks.push_back(std::move(highest));
   checks.push_back(measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um,
                             surface.scallop_bound, result.stopped));
   checks.push_back(reached_check(job, result));

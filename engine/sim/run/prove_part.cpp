@@ -125,16 +125,28 @@ double out_of_block(const TriMesh& design, const Box& block) {
   return most;
 }
 
+/// What the proofs of a body do not see: facets stray from faces, sweeps from the motion.
+struct Slack {
+  double gouge_mm, leftover_mm;
+};
+
+/// What is asked of a proof so that its bound and the slack stay within the limit however they are rounded.
+double asked_mm(double limit_um, double slack_mm) {
+  constexpr double kRounding = 1e-9;
+  return limit_um * kMicrometre - slack_mm - kRounding;
+}
+
 /// Whether the part is of the kind that its sweeps and features prove: a body of not too many facets in a
 /// block.
-bool is_provable_body(const Job& job, const stock::RawShape& raw, double slack_mm) {
+bool is_provable_body(const Job& job, const stock::RawShape& raw, const Slack& slack) {
   constexpr size_t kMostFacets = 200'000;
   const AcceptLimits& accept = job.scene.accept;
-  const TriMesh* mesh = job.proof.mesh.get();
-  if (mesh == nullptr || mesh->triangles.size() > kMostFacets) return false;
+  if (job.proof.mesh == nullptr || job.proof_outside.mesh == nullptr) return false;
+  if (job.proof_outside.mesh->triangles.size() > kMostFacets) return false;
   const double gouge_mm = accept.gouge_max_um.value_or(kGougeAllowed) * kMicrometre;
   const double excess_mm = accept.excess_max_um.value_or(kExcessAllowed) * kMicrometre;
-  return std::min(gouge_mm, excess_mm) > slack_mm && out_of_block(*mesh, raw.box()) < gouge_mm - slack_mm;
+  return excess_mm > slack.leftover_mm &&
+         out_of_block(*job.proof.mesh, raw.box()) < gouge_mm - slack.gouge_mm;
 }
 
 bool is_decided(double value_um, const std::optional<measure::Bound>& bound, std::optional<double> limit_um) {
@@ -158,7 +170,8 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
   const AcceptLimits& accept = job.scene.accept;
   constexpr double kRounding = 2e-6;  // mm: a touch of both proofs
-  const double slack = job.proof.chord_mm + main.rays.error_bound_mm + kRounding;
+  const double strays = main.rays.error_bound_mm + kRounding;
+  const Slack slack{job.proof.chord_mm + strays, job.proof_outside.chord_mm + strays};
   const stock::RawShape& raw = result.stock->raw();
   if (!is_provable_body(job, raw, slack)) return false;
   const double gouge_um = accept.gouge_max_um.value_or(kGougeAllowed);
@@ -170,17 +183,33 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
   tell_distances(design, surface);
   progress.begin("prove", 2.0, "sides");
   proof::GougeBound gouges =
-      proof::bound_gouges({design, main.rays.sweeps, cutters, gouge_um * kMicrometre - slack,
+      proof::bound_gouges({design, main.rays.sweeps, cutters, asked_mm(gouge_um, slack.gouge_mm),
                            surface.gouge_max_um * kMicrometre, progress});
   gouges.bound_mm = std::max(gouges.bound_mm, out_of_block(*job.proof.mesh, raw.box()));
   progress.advance(1.0);
-  const proof::LeftoverBound leftover = proof::bound_leftover(
-      {design, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
-       excess_um * kMicrometre - slack, surface.excess_max_um * kMicrometre, progress, 1.0});
+  std::optional<proof::SolidDesign> coarser;
+  if (job.proof_outside.mesh != job.proof.mesh)
+    coarser.emplace(*job.proof_outside.mesh, job.proof_outside.chord_mm);
+  const proof::SolidDesign& outside = coarser ? *coarser : design;
+  proof::LeftoverBound leftover = proof::bound_leftover(
+      {outside, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
+       asked_mm(excess_um, slack.leftover_mm), surface.excess_max_um * kMicrometre, progress, 1.0});
   progress.end();
   if (progress.stop_requested()) return true;
-  take_gouges(gouges, slack, gouge_um, surface);
-  take_leftover(leftover, slack, excess_um, surface);
+  if (coarser && leftover.found_mm > 0.0) {
+    const mesh::SignedPoint seen = design.distance().at(leftover.top);
+    leftover.found_mm = seen.distance_mm;
+    leftover.foot = seen.foot;
+  }
+  std::fprintf(stderr,
+               "DBG facets %zu out %zu slack %g %g gouge bound %g found %g open %zu at %g %g %g; excess "
+               "bound %g found %g open %zu regions %zu parts %zu at %g %g %g\n",
+               job.proof.mesh->triangles.size(), job.proof_outside.mesh->triangles.size(), slack.gouge_mm,
+               slack.leftover_mm, gouges.bound_mm, gouges.found_mm, gouges.open, gouges.place.x(),
+               gouges.place.y(), gouges.place.z(), leftover.bound_mm, leftover.found_mm, leftover.open,
+               leftover.regions, leftover.parts, leftover.place.x(), leftover.place.y(), leftover.place.z());
+  take_gouges(gouges, slack.gouge_mm, gouge_um, surface);
+  take_leftover(leftover, slack.leftover_mm, excess_um, surface);
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)

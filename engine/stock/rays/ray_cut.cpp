@@ -50,6 +50,21 @@ bool passes_above(const RayPassage& ray, const cutter::ConvexPiece& piece, doubl
   return std::max(nearest.normal.dot(N0), nearest.normal.dot(N1)) <= 0.0;
 }
 
+/// True only when no point of the ray up to `limit` lies in a cylinder's sweep: the same for its ends and its
+/// flank. Rays of a wall that other blocks have milled are told apart from those of this one.
+bool passes_beside(const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
+  const Vec3 top = ray.at(limit), A = ray.map.start(top), B = ray.map.end(top);
+  const Vec3 N0 = ray.map.R0t * ray.normal, N1 = ray.map.R1t * ray.normal;
+  if (std::min(A.z(), B.z()) > piece.high + kBoundSlack && std::max(N0.z(), N1.z()) <= 0.0) return true;
+  if (std::max(A.z(), B.z()) < piece.low - kBoundSlack && std::min(N0.z(), N1.z()) >= 0.0) return true;
+  const Vec2 a = A.head<2>(), way = (B - A).head<2>();
+  const double length2 = way.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp(-a.dot(way) / length2, 0.0, 1.0) : 0.0;
+  const Vec2 nearest = a + t * way;
+  return nearest.norm() > piece.radius + kBoundSlack &&
+         std::max(nearest.dot(N0.head<2>()), nearest.dot(N1.head<2>())) <= 0.0;
+}
+
 /// A ray below the design that runs along the swept surface without entering it: a face beside an edge that
 /// was milled exactly to size, seen by the rays of the other face. Rounding must not make a cut of it.
 bool only_touches(const RayPassage& ray, const cutter::ConvexPiece& piece, const RayInterval& interval,
@@ -83,6 +98,7 @@ RayInterval cut_of_piece(const RayPassage& ray, const cutter::ConvexPiece& piece
     const double low = lowest_in_sweep(piece, ray.point, ray.normal, ray.map, limit + kBoundSlack);
     return low > limit ? RayInterval{} : cut_from(low, ray, piece, limit);
   }
+  if (passes_beside(ray, piece, limit)) return {};
   const RayInterval interval = ray_interval(ray.point, ray.normal, ray.map, piece);
   const bool misses = interval.low > limit || only_touches(ray, piece, interval, limit);
   return misses ? RayInterval{} : interval;

@@ -48,6 +48,22 @@ TEST(MeshNesting, MisplacedBodiesAreFound) {
   }
 }
 
+TEST(MeshNesting, BodiesThatOverlapAreFound) {
+  const auto faults = [](const TriMesh& mesh) {
+    Diagnostics told;
+    check_apart(mesh, "part.stl", told, "design mesh");
+    return told.has_errors();
+  };
+  for (const TriMesh& apart : {kOuter, together({kOuter, kBeside}), together({kOuter, turned(kInner)}),
+                               together({turned(kMiddle), kOuter, kInner}), TriMesh{}})
+    EXPECT_FALSE(faults(apart));
+  const TriMesh bar =
+      block({-5, 15, 15}, {45, 20, 20});  // through the block, no corner of either in the other
+  for (const TriMesh& met : {together({kOuter, bar}), together({kOuter, block({39.99, 5, 5}, {50, 30, 30})}),
+                             together({kOuter, block({40, 5, 5}, {50, 30, 30})})})
+    EXPECT_TRUE(faults(met));
+}
+
 TEST(MeshNesting, ABodyInTheHoleOfARingPasses) {
   EXPECT_FALSE(find_misplaced_body(
       together({test::torus(30, 10, {0, 0, 0}, 60, 20), block({-1, -1, -1}, {1, 1, 1})})));
