@@ -34,7 +34,7 @@ std::array<Vec3, 3> facet_of(const SolidDesign& design, uint32_t facet) {
 
 /// Whether all corners of one lie on or beyond a plane of the other.
 template <typename Corners>
-bool lies_beyond(const Corners& corners, const Vec3& normal, double plane) {
+bool all_beyond(const Corners& corners, const Vec3& normal, double plane) {
   return std::all_of(corners.begin(), corners.end(),
                      [&](const Vec3& p) { return normal.dot(p) >= plane - kTouch; });
 }
@@ -43,7 +43,7 @@ bool lies_beyond(const Corners& corners, const Vec3& normal, double plane) {
 /// answer costs work alone.
 bool is_parted(const Polytope& body, const std::array<Vec3, 3>& facet, const Vec3& normal) {
   const double plane = normal.dot(facet[0]);
-  if (lies_beyond(body.corners, normal, plane) || lies_beyond(body.corners, -normal, -plane)) return true;
+  if (all_beyond(body.corners, normal, plane) || all_beyond(body.corners, -normal, -plane)) return true;
   const Vec3 middle = body.centre();
   return std::any_of(body.faces.begin(), body.faces.end(), [&](const std::vector<uint16_t>& face) {
     const Vec3 &a = body.corners[face[0]], &b = body.corners[face[1]], &c = body.corners[face[2]];
@@ -53,7 +53,7 @@ bool is_parted(const Polytope& body, const std::array<Vec3, 3>& facet, const Vec
     out /= out.dot(a - middle) < 0.0 ? -length : length;
     double reach = -std::numeric_limits<double>::infinity();
     for (const Vec3& corner : body.corners) reach = std::max(reach, out.dot(corner));
-    return lies_beyond(facet, out, reach);
+    return all_beyond(facet, out, reach);
   });
 }
 
@@ -207,8 +207,8 @@ void RegionProver::split(Part& part, const ConvexSet* by, const Vec3& centre) {
       (value(*by, centre + middle * way) <= 0.0 ? inside : outside) = middle;
     }
     normal = gradient(*by, centre + outside * way);
-    constexpr double kInside = 0.85;  // of the way to the border
-    offset = normal.dot(centre + kInside * inside * way);
+    constexpr double kOfTheWay = 0.85;  // of the way to the border
+    offset = normal.dot(centre + kOfTheWay * inside * way);
   } else {
     double longest = -1.0;
     for (const Vec3& a : part.body.corners) {

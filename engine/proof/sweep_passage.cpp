@@ -11,7 +11,7 @@
 namespace swarf::proof {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using FacetCorners = std::array<Vec3, 3>;
 
 /// A turning sweep is not divided below this share of its time.
 constexpr double kShortest = 1.0 / 256.0;
@@ -82,7 +82,7 @@ class SpanBody {
   };
   Along along(const Vec3& d, size_t end) const { return {rows_[end].transpose() * d, d.dot(origin_[end])}; }
   /// The direction from the body to a facet, in the tool's frame, of a plane that parts them.
-  std::optional<Vec3> parting(const Corners& facet) const {
+  std::optional<Vec3> parting(const FacetCorners& facet) const {
     collision::ConvexView tool, flat;
     tool.solid = &solid_;
     flat.poses = 2;
@@ -140,7 +140,7 @@ class Parting {
     return std::any_of(planes_.begin(), end, lies_beyond);
   }
 
-  bool is_clear(const Corners& facet, const Vec3& normal) {
+  bool is_clear(const FacetCorners& facet, const Vec3& normal) {
     for (size_t n = 0; n < planes_.size(); ++n) {
       if (!lies_beyond(planes_[n], facet)) continue;
       move_to_front(reaches_, n);
@@ -173,7 +173,7 @@ class Parting {
     if (ends_ == 1) plane.ends[0].offset = std::min(plane.ends[0].offset, plane.ends[1].offset);
     return plane;
   }
-  bool lies_beyond(const Plane& plane, const Corners& facet) const {
+  bool lies_beyond(const Plane& plane, const FacetCorners& facet) const {
     for (size_t i = 0; i < ends_; ++i) {
       const SpanBody::Along& end = plane.ends[i];
       const double least = std::min({end.way.dot(facet[0]), end.way.dot(facet[1]), end.way.dot(facet[2])});
@@ -202,7 +202,7 @@ Meeting meets_span(const SolidDesign& design, const SpanBody& body, Parting part
       [&](uint32_t facet) {
         met = facet;
         const mesh::SignedDistance& all = design.distance();
-        const Corners corners{all.corner(facet, 0), all.corner(facet, 1), all.corner(facet, 2)};
+        const FacetCorners corners{all.corner(facet, 0), all.corner(facet, 1), all.corner(facet, 2)};
         return !parting.is_clear(corners, all.face_normal(facet));
       });
   if (blocked) return met;

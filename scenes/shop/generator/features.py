@@ -469,8 +469,8 @@ def sixty_holes():
 
     x, y = places[37]
     Job("sixty_holes", "Plate with 60 holes", part, ((-60, -40, -15), (60, 40, 1)), [t1, t2], program,
-        Fault("gouge", 30 * math.sin(math.radians(59)), (x, y, -8 - point), "hole 37",
-              "one hole is 30 um too deep, 25.7 um square to its point"), chord_um=40)
+        Fault("gouge", 30, (x, y, -8 - point), "hole 37", "one hole is 30 um too deep: its point, from the part's"),
+        chord_um=40)
 
 
 # -- 28 -----------------------------------------------------------------------------------------------------------
