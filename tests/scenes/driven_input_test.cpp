@@ -330,7 +330,8 @@ TEST(DrivenByDesign, ANurbsSurfaceDrivesAsItsPolynomialDoes) {
       "machine = \"mill_3axis\"\n[cutter]\nnumber = 1\nshape = \"ball\"\ndiameter_mm = 6\nflute_length_mm = "
       "30\n"
       "shank_diameter_mm = 6\nlength_mm = 60\n[setup]\nwork_origin_mm = \"on_table\"\n"
-      "[stock]\nbox_mm = [[0, 0, -10], [10, 8, 6]]\nvoxel_mm = 0.4\n[accept]\ngouge_max_um = 0.2\n"
+      "[stock]\nbox_mm = [[0, 0, -10], [10, 8, 6]]\nvoxel_mm = 0.4\n[accept]\ngouge_max_um = 0.2\nroughing = "
+      "true\n"
       "[driven]\ninterval_mm = 2\nfeed_mm_min = 1500\n";
   // z = 2 x (10 - x) / 25 over 10 x 8 mm.
   swarf::test::write_text(

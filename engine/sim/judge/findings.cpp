@@ -12,6 +12,7 @@
 #include "program/source_text.h"
 #include "sim/judge/judge.h"
 #include "sim/judge/limit_text.h"
+#include "sim/judge/unlimited_excess.h"
 #include "sim/judge/unlimited_gouge.h"
 
 namespace swarf::sim {
@@ -187,22 +188,15 @@ void gouge_without_limit(const Result& result, const char* remedy, Collector& co
 constexpr const char* kExcess = "material stands above the design";
 constexpr const char* kExcessRemedy = "machine this place too, or start from a smaller stock";
 
-/// Without a limit of excess the one place where most is left: of a patch, of what stands on it.
+/// Without a limit of excess the one place where most is left.
 void excess_without_limit(const Job& job, const Result& result, Collector& collect) {
   collect.begin("excess");
   if (collect.check().outcome != Outcome::kFails) return;
-  const measure::SurfaceMetrics& surface = result.main.surface;
+  const HighestLeft left = highest_left(job, result);
   measure::Region region;
-  region.worst_um = *collect.check().value;
-  region.place = surface.excess_top;
-  region.block = surface.excess_block;
-  const auto highest =
-      std::max_element(result.main.ridges.begin(), result.main.ridges.end(),
-                       [](const auto& a, const auto& b) { return a.height_um < b.height_um; });
-  if (!job.design_mesh && highest != result.main.ridges.end()) {
-    region.place = highest->point;
-    region.block = highest->block_a;
-  }
+  region.worst_um = left.um;
+  region.place = left.place;
+  region.block = left.block;
   at_region(
       collect.at_block("excess",
                        fmt::format("{}, {:.3f} um about ({:.3f}, {:.3f}, {:.3f}) mm; more than the {:g} um "

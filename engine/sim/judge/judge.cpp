@@ -11,6 +11,7 @@
 #include "cutter/cutter.h"
 #include "sim/job/tool_words.h"
 #include "sim/judge/limit_text.h"
+#include "sim/judge/unlimited_excess.h"
 #include "sim/judge/unlimited_gouge.h"
 #include "sim/run/result.h"
 
@@ -95,16 +96,20 @@ void judge_without_limit(const SurfaceMetrics& surface, Check& gouge) {
 }
 
 /// Without a limit a part that stands far above its design is none, unless the job leaves material to another
-/// one. Above a patch the stock may stand elsewhere on the same column: what stands on it counts.
-void judge_left_without_limit(const Job& job, const SurfaceMetrics& surface, Check& excess) {
+/// one.
+void judge_left_without_limit(const Job& job, const Result& result, Check& excess) {
   const AcceptLimits& accept = job.scene.accept;
   if (excess.outcome != Outcome::kNotJudged || accept.scallop_max_um) return;
   if (accept.roughing) {
     excess.reason = "roughing: material may be left";
     return;
   }
-  const double left_um = job.design_mesh ? surface.excess_max_um : surface.scallop_max_um;
+  const double left_um = highest_left(job, result).um;
   if (!(left_um > kExcessAllowed)) return;
+  if (job.scene.stock.auto_box) {
+    excess.reason = "the block is assumed around the path; --stock or stock.box_mm says the real one";
+    return;
+  }
   excess.outcome = Outcome::kFails;
   excess.limit = kExcessAllowed;
   excess.value = left_um;
@@ -148,7 +153,7 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
   checks.push_back(std::move(deepest));
   Check highest = measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
                            surface.excess_bound, result.stopped);
-  judge_left_without_limit(job, surface, highest);
+  judge_left_without_limit(job, result, highest);
   checks.push_back(std::move(highest));
   checks.push_back(measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um,
                             surface.scallop_bound, result.stopped));

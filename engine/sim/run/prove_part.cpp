@@ -201,13 +201,6 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
     leftover.found_mm = seen.distance_mm;
     leftover.foot = seen.foot;
   }
-  std::fprintf(stderr,
-               "DBG facets %zu out %zu slack %g %g gouge bound %g found %g open %zu at %g %g %g; excess "
-               "bound %g found %g open %zu regions %zu parts %zu at %g %g %g\n",
-               job.proof.mesh->triangles.size(), job.proof_outside.mesh->triangles.size(), slack.gouge_mm,
-               slack.leftover_mm, gouges.bound_mm, gouges.found_mm, gouges.open, gouges.place.x(),
-               gouges.place.y(), gouges.place.z(), leftover.bound_mm, leftover.found_mm, leftover.open,
-               leftover.regions, leftover.parts, leftover.place.x(), leftover.place.y(), leftover.place.z());
   take_gouges(gouges, slack.gouge_mm, gouge_um, surface);
   take_leftover(leftover, slack.leftover_mm, excess_um, surface);
   surface.gouge_regions = keep_worst(surface.gouges);

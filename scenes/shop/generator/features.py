@@ -560,7 +560,7 @@ def mirrored_program():
         return p
 
     Job("mirrored_program", "Mirrored program", part, ((-52, -30, -18), (52, 30, 1)), [t1, t2], program,
-        Fault("gouge", 12, (-8, -8, -3), "wall", "the mirror stands 6 um beside the middle"),
+        Fault("gouge", 12, (-8, -8, -3), ("wall", "slot"), "the mirror stands 6 um beside the middle"),
         head='dialect = "fanuc"')
 
 
