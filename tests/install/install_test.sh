@@ -6,6 +6,15 @@ build=$1 source=$2 work=$3
 rm -rf "$work" && mkdir -p "$work"
 trap 'rm -rf "$work"' EXIT
 
+# No library comes from the current folder: no run path has an empty or relative entry.
+for binary in "$build"/cli/swarf "$build"/cli/*.so; do
+  if readelf -dW "$binary" | grep -E 'R(UN)?PATH' | grep -E '\[[^/$]|:[^/$]|:$|::'; then
+    echo "$binary looks for libraries in the current folder"; exit 1
+  fi
+done
+mkdir "$work/strangers" && : >"$work/strangers/libOpenMeshTools.so.9.0"
+(cd "$work/strangers" && "$build/cli/swarf" --version)
+
 cmake --install "$build" --prefix "$work/first" >/dev/null
 mv "$work/first" "$work/moved"
 cd "$work"
