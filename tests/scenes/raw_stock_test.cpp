@@ -88,6 +88,30 @@ TEST(RawStockScene, CylinderAndTubeHaveTheirVolumesInClosedForm) {
   }
 }
 
+/// A bar into which the square design fits but for its edges: they reach 4.9497 mm from the axis.
+TEST(RawStockScene, ABarThatIsTooThinAtTheEdgesIsAGouge) {
+  const fs::path folder = swarf::test::fresh_folder("raw_stock_thin_bar");
+  write_text(folder / "part.obj",
+             "v -3.5 -3.5 -5\nv 3.5 -3.5 -5\nv 3.5 3.5 -5\nv -3.5 3.5 -5\nv -3.5 -3.5 0\nv 3.5 -3.5 0\n"
+             "v 3.5 3.5 0\nv -3.5 3.5 0\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  write_text(folder / "face.nc",
+             "G21 G17 G90 G94\nT1 M6\nS5000 M3\nG0 X-20 Y0 Z5\nG1 Z0 F2000\nX20\nG0 Z20\nM2\n");
+  for (const auto& [diameter, fits] : {std::pair("9.88", false), std::pair("9.9", true)}) {
+    write_text(folder / "scene.toml",
+               "nc = \"face.nc\"\ntools = \"T1=16\"\n"
+               "setup = { work_origin_mm = \"on_table\", without_length = \"tip\" }\n"
+               "[stock]\nvoxel_mm = 0.2\ncylinder = { base_mm = [0, 0, -5], length_mm = 6, diameter_mm = " +
+                   std::string(diameter) +
+                   " }\n[design]\nmesh = \"part.obj\"\n[accept]\ngouge_max_um = 2\nexcess_max_um = 2000\n");
+    const auto run = swarf::test::run_swarf("run " + (folder / "scene.toml").string() +
+                                            " --no-render -q -o " + (folder / "out").string());
+    EXPECT_EQ(run.exit_code, fits ? 0 : 1) << run.output;
+    const json surface = json::parse(std::ifstream(folder / "out/metrics.json")).at("surface");
+    // Square to the nearest face the edge lacks (4.9497 - 4.94) / sqrt 2.
+    EXPECT_GE(surface.at("gouge_bound_um").get<double>(), fits ? 0.0 : 6.8);
+  }
+}
+
 TEST(RawStockScene, TheSecondClampingBeginsWithWhatTheFirstHasLeft) {
   const fs::path first = scene_with("first", "box_mm = [[-20, -20, -15], [20, 20, 0]]");
   write_text(first / "cross.ngc", kSlot);

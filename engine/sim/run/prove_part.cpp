@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "mesh/mesh_check.h"
 #include "proof/gouge_bound.h"
 #include "proof/leftover_bound.h"
 #include "proof/missing_bound.h"
@@ -114,15 +115,29 @@ void take_leftover(const proof::LeftoverBound& proven, double slack_mm, double l
             limit_um);
 }
 
-/// How far a design reaches out of a block: nothing that the block lacks lies deeper below the design, for
-/// that far away the design ends.
-double out_of_block(const TriMesh& design, const Box& block) {
+/// How far a design reaches out of a convex raw stock: nothing that the stock lacks lies deeper below the
+/// design, for that far away the design ends.
+double out_of_stock(const TriMesh& design, const stock::RawShape& raw) {
   double most = 0.0;
   for (const auto& p : design.positions) {
     const Vec3 at(p[0], p[1], p[2]);
-    most = std::max({most, (block.lower - at).maxCoeff(), (at - block.upper).maxCoeff()});
+    most = std::max(most, raw.is_box()
+                              ? std::max((raw.box().lower - at).maxCoeff(), (at - raw.box().upper).maxCoeff())
+                              : raw.distance_mm(at));
   }
   return most;
+}
+
+/// Whether all that the raw stock may lack is known: of a convex one from the design's corners, of one with
+/// flat sides from its facets (prove_raw). Flats around a round one stand out by hundredths of a millimetre.
+bool knows_what_stock_lacks(const Job& job, const stock::RawShape& raw) {
+  const RawSettings& settings = job.scene.stock.raw;
+  const bool is_bar = settings.kind == RawKind::kTube && settings.tube.inner_radius_mm == 0.0 &&
+                      raw.text() == job.scene.stock.body_W().text();
+  if (raw.is_box() || is_bar) return true;
+  constexpr double kSame = 1e-7;
+  const double volume = raw.volume_mm3();
+  return std::abs(mesh::enclosed_volume(raw.mesh_around()) - volume) <= kSame * volume;
 }
 
 /// What the proofs of a body do not see: facets stray from faces, sweeps from the motion.
@@ -145,8 +160,8 @@ bool is_provable_body(const Job& job, const stock::RawShape& raw, const Slack& s
   if (job.proof_outside.mesh->triangles.size() > kMostFacets) return false;
   const double gouge_mm = accept.gouge_max_um.value_or(kGougeAllowed) * kMicrometre;
   const double excess_mm = accept.excess_max_um.value_or(kExcessAllowed) * kMicrometre;
-  return excess_mm > slack.leftover_mm &&
-         out_of_block(*job.proof.mesh, raw.box()) < gouge_mm - slack.gouge_mm;
+  return excess_mm > slack.leftover_mm && knows_what_stock_lacks(job, raw) &&
+         out_of_stock(*job.proof.mesh, raw) < gouge_mm - slack.gouge_mm;
 }
 
 bool is_decided(double value_um, const std::optional<measure::Bound>& bound, std::optional<double> limit_um) {
@@ -185,7 +200,7 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
   proof::GougeBound gouges =
       proof::bound_gouges({design, main.rays.sweeps, cutters, asked_mm(gouge_um, slack.gouge_mm),
                            surface.gouge_max_um * kMicrometre, progress});
-  gouges.bound_mm = std::max(gouges.bound_mm, out_of_block(*job.proof.mesh, raw.box()));
+  gouges.bound_mm = std::max(gouges.bound_mm, out_of_stock(*job.proof.mesh, raw));
   progress.advance(1.0);
   std::optional<proof::SolidDesign> coarser;
   if (job.proof_outside.mesh != job.proof.mesh)
