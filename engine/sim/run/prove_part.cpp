@@ -206,9 +206,19 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
   if (job.proof_outside.mesh != job.proof.mesh)
     coarser.emplace(*job.proof_outside.mesh, job.proof_outside.chord_mm);
   const proof::SolidDesign& outside = coarser ? *coarser : design;
-  proof::LeftoverBound leftover = proof::bound_leftover(
-      {outside, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
-       asked_mm(excess_um, slack.leftover_mm), surface.excess_max_um * kMicrometre, progress, 1.0});
+  const auto left_over = [&](const proof::SolidDesign& facets, double slack_mm) {
+    return proof::bound_leftover({facets, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
+                                  asked_mm(excess_um, slack_mm), surface.excess_max_um * kMicrometre,
+                                  progress, 1.0});
+  };
+  double leftover_slack = slack.leftover_mm;
+  proof::LeftoverBound leftover = left_over(outside, leftover_slack);
+  // Between the limit and the limit less the wider slack the finer facets decide.
+  if (coarser && um_from_mm(leftover.bound_mm + leftover_slack) > excess_um &&
+      um_from_mm(leftover.found_mm - leftover_slack) <= excess_um) {
+    leftover_slack = slack.gouge_mm;
+    leftover = left_over(design, leftover_slack);
+  }
   progress.end();
   if (progress.stop_requested()) return true;
   if (coarser && leftover.found_mm > 0.0) {
@@ -217,7 +227,7 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
     leftover.foot = seen.foot;
   }
   take_gouges(gouges, slack.gouge_mm, gouge_um, surface);
-  take_leftover(leftover, slack.leftover_mm, excess_um, surface);
+  take_leftover(leftover, leftover_slack, excess_um, surface);
   surface.gouge_regions = keep_worst(surface.gouges);
   surface.excess_regions = keep_worst(surface.excesses);
   if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
