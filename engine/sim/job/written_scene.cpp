@@ -120,7 +120,9 @@ std::string design_text(const Job& job, const fs::path& folder) {
   if (job.scene.design.kind != DesignKind::kMesh)
     return "\n[design]\nkind = \"none\"  # mesh = \"part.stl\": what is left is measured against it\n";
   return "\n[design]\n" + job.scene.design.mesh_key + " = " + seen_from(folder, job.scene.design.mesh_file) +
-         "\n\n[accept]\n# gouge_max_um = 50  # a limit makes it a verdict\n# excess_max_um = 200  # material that may be left; without a limit 100, with roughing = true any\n";
+         "\n\n[accept]\n# gouge_max_um = 50  # a limit makes it a verdict\n"
+         "# excess_max_um = 200  # material that may be left; without a limit 100, with roughing = true "
+         "any\n";
 }
 
 std::string pictures_text(const Job& job) {

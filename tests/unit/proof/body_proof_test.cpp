@@ -146,7 +146,7 @@ swarf::proof::GougeBound gouge_of(const TriMesh& design, const Sweep& sweep, con
 }
 
 TEST(BodyProof, AWideToolTurnsRoundABarWithoutGouging) {
-  // The chord of the tip's way lies 20 (1 - cos 0.0025) = 0.06 um below its ends, which the start is raised by.
+  // The chord of the tip's way lies 20 (1 - cos 0.0025) = 0.06 um below its ends: the start is raised by it.
   const CutterSolid cutter(8.0, 30.0);
   const auto clear = gouge_of(bar(360), round_the_bar(0.3, 0.305, 0.0001), cutter);
   EXPECT_EQ(clear.open, 0U);
