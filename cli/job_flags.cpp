@@ -92,7 +92,9 @@ void add_job_flags(CLI::App& command, JobWords& words) {
       ->group(group);
   command
       .add_option("--design", words.design,
-                  "what the part is measured against: closed mesh, mm (.stl .ply .obj)")
+                  "what the part is measured against: STEP or IGES (.step .stp .igs .iges), or a closed mesh "
+                  "in mm (.stl .ply "
+                  ".obj .3mf)")
       ->group(group);
   command.add_option("--voxel", words.voxel_mm, "cells of the stock (default: by tool, block and memory)")
       ->type_name("MM")
@@ -252,7 +254,7 @@ std::string flag_of(std::string_view line, bool of_design, const std::vector<std
   if (is({"start_tool"})) return value_of("--start-tool");
   if (is({"work_origin_mm"})) return value_of("--origin");
   if (is({"voxel_mm"})) return value_of("--voxel");
-  if (is({"mesh"}) && of_design) return value_of("--design");
+  if (is({"mesh", "step"}) && of_design) return value_of("--design");
   return is({"box_mm", "mesh", "cylinder", "tube"}) ? value_of("--stock") : "";
 }
 

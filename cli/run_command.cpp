@@ -215,12 +215,15 @@ struct JobRun {
   sim::Result result;
   int exit_code = kPass;
 };
-JobRun run_job(const RunOptions& options, const sim::Job& job, reports::PendingFolder& pending,
-               const PostedScene* posted, std::vector<reports::FileVerdict>& found) {
-  const reports::OutputOptions output = output_options(options, posted);
+JobRun run_job(const RunOptions& options, const sim::Job& job, const TimeBudget& budget,
+               reports::PendingFolder& pending, const PostedScene* posted,
+               std::vector<reports::FileVerdict>& found) {
+  reports::OutputOptions output = output_options(options, posted);
+  output.budget = budget;
   reports::begin_run(pending, job, output);
   TerminalProgress progress;
   sim::CutOptions cut = cut_options(options, pending.path());
+  cut.budget = budget;
   if (job.scene.setup.number > 0) cut.keep_every_s = 0.0;  // there is no going on from it
   JobRun run{sim::simulate(job, cut, progress)};
   print_diagnostics(run.result.main.warnings);
@@ -255,7 +258,8 @@ int run_scene(const RunOptions& options, std::vector<reports::FileVerdict>& foun
     fmt::print(stderr, "stopped: before a program was found; nothing was written\n");
     return kStopped;
   }
-  const JobRun run = run_job(options, job, pending, posted ? &*posted : nullptr, found);
+  const JobRun run = run_job(options, job, TimeBudget(job.scene.output.budget_s, options.begun), pending,
+                             posted ? &*posted : nullptr, found);
   if (run.result.stopped) {
     print_stopped(options, run.result, folder);
     return run.exit_code;
@@ -340,7 +344,8 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
     JobRun run;
     keeping_finished(pending, done, [&] {
       reports::PendingFolder own(pending.file(place));
-      run = run_job(options, *job, own, nullptr, found);
+      const TimeBudget whole(job->scene.output.budget_s, options.begun);
+      run = run_job(options, *job, whole.part_of_rest(jobs.size() - done.size()), own, nullptr, found);
     });
     exit_code = std::max(exit_code, run.exit_code);
     if (run.result.stopped) break;

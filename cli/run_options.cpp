@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "cli/number_flags.h"
 
 namespace swarf::cli {
@@ -90,6 +92,7 @@ std::vector<std::string> command_words(const RunOptions& options) {
   flag(options.spill, "--spill");
   add(options.keep_every_s != RunOptions{}.keep_every_s, "--keep-every",
       fmt::format("{}", options.keep_every_s));
+  add(options.budget_s > 0.0, "--budget", fmt::format("{}", options.budget_s));
   add(options.setup > 0, "--setup", fmt::format("{}", options.setup));
   add(options.threads > 0, "--threads", fmt::format("{}", options.threads));
   flag(options.tiles, "--tiles");
@@ -112,6 +115,7 @@ std::vector<std::string> overrides_of(const RunOptions& options) {
   if (options.max_memory_mb > 0.0)
     overrides.push_back(
         fmt::format("stock.max_memory_mb={}", options.spill ? kAnything : options.max_memory_mb));
+  if (options.budget_s > 0.0) overrides.push_back(fmt::format("output.budget_s={}", options.budget_s));
   if (!options.trajectory.empty())
     overrides.push_back(fmt::format("output.trajectory=\"{}\"", options.trajectory));
   return overrides;
@@ -163,6 +167,16 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       "one of the processes that mpirun has started: each cuts its own tiles of the stock and of the "
       "measuring rays; results are those of one process, to the last bit");
   add_stock_options(command, options);
+  command
+      .add_option(
+          "--budget", options.budget_s,
+          "time for the whole run: 20s, 5min, 1h. Cutting and measuring always end. The proofs end with "
+          "what they have shown by then (a limit that is not proven is a finding), and no further "
+          "picture is begun; what is left out is named")
+      ->type_name("TIME")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
+      ->check(positive());
   command.add_flag("--no-render", options.no_render,
                    "no movie, no stills, no page and no glTF: numbers, findings, stock and blocks.csv");
   command.add_flag("--report", options.report, "with --no-render: page and glTF all the same");

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/time_budget.h"
 #include "cli/job_flags.h"
 #include "cli/pipeline_files.h"
 #include "sim/run/cut_stage.h"
@@ -23,6 +24,8 @@ struct RunOptions {
   size_t record_every = 256;
   size_t setup = 0;  ///< the last one of several; 0: all
   double max_memory_mb = 0.0, keep_every_s = 60.0;
+  double budget_s = 0.0;  ///< 0: what the scene says
+  TimeBudget::Clock::time_point begun = TimeBudget::Clock::now();
   bool no_render = false, report = false, json = false, record = false, check = false, open = false,
        pdf = false;
   bool tiles = false, spill = false;

@@ -35,6 +35,9 @@ std::string findings_json(const sim::Result& result) {
                       {"line_last", std::max(finding.where.line, finding.line_last)},
                       {"block", finding.block},
                       {"t_s", finding.t_s},
+                      {"earlier", finding.earlier.line > 0
+                                      ? Json{{"file", finding.earlier.file}, {"line", finding.earlier.line}}
+                                      : Json(nullptr)},
                       {"place_mm", place(finding.place_W)},
                       {"machine_place_mm", place(finding.place_M)},
                       {"number", number}});

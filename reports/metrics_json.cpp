@@ -512,6 +512,12 @@ Json bad_cuts_json(const sim::Result& result) {
   return {{"rapids_in_material", count(true)}, {"spindle_wrong", count(false)}, {"events", events}};
 }
 
+/// Null without a budget.
+Json budget_json(const sim::Job& job, const sim::Result& result) {
+  const double seconds = job.scene.output.budget_s;
+  return seconds > 0.0 ? Json{{"seconds", seconds}, {"left_out", result.left_out}} : Json();
+}
+
 }  // namespace
 
 std::string json_text(const nlohmann::ordered_json& json) {
@@ -538,6 +544,7 @@ std::string metrics_json(const sim::Job& job, const sim::Result& result, const R
             {"checks", checks_json(result.checks)},
             {"not_judged", not_judged_json(result.checks)},
             {"assumptions", assumptions_json(job.scene.assumptions)},
+            {"budget", budget_json(job, result)},
             {"motion", motion_json(job, result)},
             {"kinematics", kinematics_json(job, motion)},
             {"stock", stock_json(job, result)},

@@ -16,6 +16,7 @@ namespace swarf::reports {
 struct RenderStatistics {
   int frames = 0;
   double frame_ms_median = 0.0;
+  bool is_whole = true;  ///< false: the movie ends before its last planned frame
 };
 
 /// The JSON text of metrics.json (schema 1). `avoidance`: of a scene with [post].

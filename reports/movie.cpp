@@ -181,7 +181,7 @@ RenderStatistics make_movie(const FinishedRun& run, const std::string& path, con
   progress.end();
   if (times.empty()) return {};
   movie.finish();
-  return {static_cast<int>(times.size()), median(times)};
+  return {static_cast<int>(times.size()), median(times), times.size() == frames.size()};
 }
 
 }  // namespace swarf::reports

@@ -126,14 +126,19 @@ std::vector<Picture> planned_stills(const FinishedRun& run) {
   return pictures;
 }
 
+/// `left_out`: those that there is no time for.
 void write_stills(const PendingFolder& folder, const FinishedRun& run, const StillPart& part,
-                  Progress& progress, RunFiles& files, Attempts& attempts) {
+                  Progress& progress, RunFiles& files, std::vector<std::string>& left_out,
+                  Attempts& attempts) {
   const std::vector<Picture> pictures = planned_stills(run);
   const sim::StillSettings& stills = run.job.scene.stills;
   render::RayTreePtr tree;
   progress.begin("stills", static_cast<double>(pictures.size()), "pictures");
   for (const Picture& picture : pictures) {
-    if (progress.stop_requested()) break;
+    if (progress.stop_requested()) {
+      left_out.push_back(picture.file);
+      continue;
+    }
     // What is measured has its scale; the deepest and the highest place are where the measures found them.
     const bool measured = picture.kind == StillKind::kPart || picture.kind == StillKind::kDeviation;
     attempts.run([&] {
@@ -146,17 +151,33 @@ void write_stills(const PendingFolder& folder, const FinishedRun& run, const Sti
   }
 }
 
+/// Half a movie would be taken for a whole one.
+void write_movie(const PendingFolder& folder, const FinishedRun& run, const TimeBudget& budget,
+                 Progress& progress, RunFiles& files, RenderStatistics& statistics,
+                 std::vector<std::string>& left_out) {
+  constexpr const char* kMovie = "movie.mp4";
+  if (run.job.scene.movie.seconds <= 0.0) return;
+  if (!progress.stop_requested()) statistics = make_movie(run, folder.file(kMovie), "machine", progress);
+  if (budget.has_passed() && !(statistics.frames > 0 && statistics.is_whole)) {
+    fs::remove(folder.file(kMovie));
+    statistics = {};
+    left_out.emplace_back(kMovie);
+  }
+  if (statistics.frames > 0) files.movie = folder.file(kMovie);
+}
+
 void write_pictures(const PendingFolder& folder, const FinishedRun& run, const StillPart& part,
-                    const sim::Result& result, Progress& progress, RunFiles& files,
+                    const TimeBudget& budget, sim::Result& result, Progress& progress, RunFiles& files,
                     RenderStatistics& statistics, Attempts& attempts) {
-  write_stills(folder, run, part, progress, files, attempts);
+  write_stills(folder, run, part, progress, files, result.left_out, attempts);
   files.finding_pngs = make_finding_pictures(
       run, part.mesh, result,
       [&](size_t number) { return folder.file(fmt::format("still_finding_{}.png", number)); }, progress);
   progress.end();
-  if (run.job.scene.movie.seconds <= 0.0 || progress.stop_requested()) return;
-  statistics = make_movie(run, folder.file("movie.mp4"), "machine", progress);
-  if (statistics.frames > 0) files.movie = folder.file("movie.mp4");
+  const bool lacks_some = std::any_of(files.finding_pngs.begin(), files.finding_pngs.end(),
+                                      [](const std::string& file) { return file.empty(); });
+  if (lacks_some && progress.stop_requested()) result.left_out.emplace_back("pictures of findings");
+  write_movie(folder, run, budget, progress, files, statistics, result.left_out);
 }
 
 /// What pictures and measures can be made from again, the most precious first.
@@ -275,16 +296,21 @@ std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, si
   TriMesh closed = options.report || options.render ? run.stock.mesh() : TriMesh{};
   std::optional<ReviewModels> models;
   std::optional<StillPart> part;
-  if (options.report) {
+  BudgetProgress limited(progress, options.budget, 1.0);
+  const bool models_wanted = options.report && !limited.stop_requested();
+  if (models_wanted) {
     progress.begin("glTF", 2, "files");
     attempts.run([&] { models = review_models(run, closed, part_error_mm(run.job), review_pins(result)); });
     progress.advance(1);
   }
   if (options.render) attempts.run([&] { part = still_part(run, std::move(closed), worst_places(result)); });
   if (models) attempts.run([&] { write_glb(folder, run, std::move(*models), result, files); });
-  if (options.report) progress.end();
+  if (models_wanted) progress.end();
+  if (options.report && !models_wanted) result.left_out = {"part.glb", "machine.glb"};
   if (part)
-    attempts.run([&] { write_pictures(folder, run, *part, result, progress, files, statistics, attempts); });
+    attempts.run([&] {
+      write_pictures(folder, run, *part, options.budget, result, limited, files, statistics, attempts);
+    });
   result.stopped = progress.stop_requested();
   if (options.report) {
     progress.begin("report", 1, "files");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/time_budget.h"
 #include "reports/metrics_json.h"
 #include "reports/pending_folder.h"
 #include "sim/job/kept_job.h"
@@ -23,6 +24,7 @@ struct OutputOptions {
   std::vector<std::string> overrides;             ///< the --set of this run, kept with it
   std::string command;                            ///< as it was given, ready for a shell
   const avoidance::Outcome* avoidance = nullptr;  ///< of a scene with [post]; else null
+  TimeBudget budget;                              ///< after it no further picture is begun
 };
 
 using sim::kRunMark;
@@ -33,7 +35,8 @@ void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOpt
 /// Writes everything into `folder` beside what the run has saved there already, and moves it into place: an
 /// earlier result is replaced whole; it stays until then. Stock, rays and numbers come first:
 /// when one of them cannot be written, InputError says why, and what could be is kept beside the target. What
-/// goes wrong with pictures and page is returned; the rest is there.
+/// goes wrong with pictures and page is returned; the rest is there. Result::left_out names what the budget did
+/// not allow.
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
                                   const OutputOptions& options, Progress& progress);
 

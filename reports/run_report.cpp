@@ -1,6 +1,7 @@
 #include "reports/run_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -190,8 +191,13 @@ Table axis_table(const sim::Job& job, const sim::Result& result) {
   return table;
 }
 
+std::string left_out_words(const sim::Job& job, const sim::Result& result) {
+  return fmt::format("{} (time budget of {:g} s)", fmt::join(result.left_out, ", "),
+                     job.scene.output.budget_s);
+}
+
 /// The judge's list, then what this program does not look at.
-std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
+std::vector<Check> checks_of(const sim::Job& job, const sim::Result& result, bool rendered) {
   std::vector<Check> checks = check_rows(result.checks);
   checks.push_back(
       {"Cutter load, spindle power, deflection", "", "the simulation is geometric", State::kNotChecked});
@@ -201,6 +207,9 @@ std::vector<Check> checks_of(const sim::Result& result, bool rendered) {
   }
   if (!rendered) {
     checks.push_back({"Pictures and movie", "", "switched off with --no-render", State::kNotChecked});
+  }
+  if (!result.left_out.empty()) {
+    checks.push_back({"Left out", "", left_out_words(job, result), State::kNotChecked});
   }
   return checks;
 }
@@ -495,7 +504,7 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
   }
   if (result.driven) data.topics.insert(data.topics.begin(), driven_topic(result));
   if (result.flank_milling) data.topics.insert(data.topics.begin(), flank_topic(job, result));
-  data.checks = checks_of(result, rendered);
+  data.checks = checks_of(job, result, rendered);
   data.facts = facts_of(job, result, files);
   data.facts.insert(data.facts.begin() + 1, time_facts(job, result));
   if (result.main.nc) {
@@ -568,6 +577,7 @@ std::vector<std::pair<std::string, std::string>> summary_lines(const sim::Job& j
                   job.scene.stock.voxel_mm));
   lines.emplace_back("clearance", clearance_line(result));
   if (result.main.contacts) lines.emplace_back("machine", machine_line(*result.main.contacts));
+  if (!result.left_out.empty()) lines.emplace_back("left out", left_out_words(job, result));
   return lines;
 }
 

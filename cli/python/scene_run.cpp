@@ -21,12 +21,13 @@ sim::Job load(const RunRequest& request) {
   return sim::load_job(request.file, request.overrides);
 }
 
-sim::CutOptions cut_of(const RunRequest& request, const std::string& folder) {
+sim::CutOptions cut_of(const RunRequest& request, const sim::Job& job, const std::string& folder) {
   const bool draws = request.render && !folder.empty();
   sim::CutOptions cut;
   cut.save_folder = folder;
   cut.outputs = {draws, draws};
   cut.overrides = request.overrides;
+  cut.budget = TimeBudget(job.scene.output.budget_s);
   return cut;
 }
 
@@ -34,9 +35,11 @@ sim::CutOptions cut_of(const RunRequest& request, const std::string& folder) {
 std::vector<Diagnostic> run_into_folder(const RunRequest& request, SceneRun& run, Progress& progress) {
   reports::check_output_folder(request.output, reports::kRunMark);
   reports::PendingFolder pending(request.output);
-  const reports::OutputOptions options{request.render, request.render, request.overrides, request.command};
+  const sim::CutOptions cut = cut_of(request, run.job, pending.path());
+  const reports::OutputOptions options{request.render,  request.render, request.overrides,
+                                       request.command, nullptr,        cut.budget};
   reports::begin_run(pending, run.job, options);
-  run.result = sim::simulate(run.job, cut_of(request, pending.path()), progress);
+  run.result = sim::simulate(run.job, cut, progress);
   if (run.result.stopped) return {};
   return reports::write_run(pending, run.job, run.result, options, progress);
 }
@@ -53,7 +56,7 @@ std::unique_ptr<SceneRun> run_scene(const RunRequest& request, Progress& progres
   append(run->told, run->job.warnings);
   std::vector<Diagnostic> failures;
   if (request.output.empty())
-    run->result = sim::simulate(run->job, cut_of(request, ""), progress);
+    run->result = sim::simulate(run->job, cut_of(request, run->job, ""), progress);
   else
     failures = run_into_folder(request, *run, progress);
   append(run->told, run->result.main.warnings);

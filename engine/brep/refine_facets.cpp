@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <unordered_set>
 #include <utility>
 
 #include "base/parallel.h"
@@ -142,11 +143,11 @@ class Refiner {
 
   /// Vertices where a whole border of a surface's square is one point: any parameter along it is theirs.
   void find_poles() {
-    constexpr double kPole = 1e-6;
+    constexpr double kPole = 1e-6, kBorder = 1e-9;  // the library's corners lie beside the border by rounding
     for (const FineFacet& facet : facets_) {
       for (size_t k = 0; k < 3 && is_curved(facet); ++k) {
         const Vec2& uv = facet.uv[k];
-        if (uv.minCoeff() > 0.0 && uv.maxCoeff() < 1.0) continue;
+        if (uv.minCoeff() > kBorder && uv.maxCoeff() < 1.0 - kBorder) continue;
         const surface::Derivatives d = surface_of(facet).derivatives(uv.x(), uv.y());
         const double u = d.Su.norm(), v = d.Sv.norm();
         if (u < kPole * v) poles_[{facet.surface, facet.corners[k]}] = 0;
@@ -344,7 +345,7 @@ class Refiner {
         const SideKey key = key_of(facets_[n].corners[k], facets_[n].corners[(k + 1) % 3]);
         const auto [it, is_new] = beside.try_emplace(key, std::array<uint32_t, 2>{n, kNone});
         if (!is_new) it->second[1] = n;
-        if (is_new && facets_[n].sides[k].edge == kNoEdge) open.push_back(key);
+        if (is_new && facets_[n].sides[k].edge == kNoEdge && !is_settled(key)) open.push_back(key);
       }
     }
     while (!open.empty()) {
@@ -364,19 +365,27 @@ class Refiner {
           std::array<uint32_t, 2>& of = beside.at(side);
           if (of[0] == pair.facet[1 - n] && of[1] != pair.facet[n]) of[0] = pair.facet[n];
           if (of[1] == pair.facet[1 - n] && of[0] != pair.facet[n]) of[1] = pair.facet[n];
-          if (made[n].sides[k].edge == kNoEdge) open.push_back(side);
+          if (made[n].sides[k].edge == kNoEdge && !is_settled(side)) open.push_back(side);
         }
       }
     }
   }
+
+  static uint64_t number_of(const SideKey& key) { return uint64_t{key.first} << 32U | key.second; }
+  /// Whether a round before has seen that it strays little enough.
+  bool is_settled(const SideKey& key) const { return settled_.contains(number_of(key)); }
 
   /// One round; false where no side strays too far. Those between two surfaces go first.
   bool halve_sides() {
     std::map<SideKey, Middle> middles;
     for (const FineFacet& facet : facets_) {
       for (size_t k = 0; k < 3; ++k) {
+        const SideKey key = key_of(facet.corners[k], facet.corners[(k + 1) % 3]);
+        if (is_settled(key)) continue;
+        Middle& best = middles[key];
+        // Within a surface both facets see the same.
+        if (best.rank == 2 && best.surface == facet.surface && facet.sides[k].edge == kNoEdge) continue;
         const Middle one = middle_of(facet, k);
-        Middle& best = middles[key_of(facet.corners[k], facet.corners[(k + 1) % 3])];
         const int surface =
             best.surface == -1 || best.surface == facet.surface ? facet.surface : Middle::kBorder;
         const double sagitta_mm = std::max(best.sagitta_mm, one.sagitta_mm);
@@ -385,7 +394,6 @@ class Refiner {
         best.sagitta_mm = sagitta_mm;
       }
     }
-    most_sagitta_ = 0.0;
     const bool on_borders = std::any_of(middles.begin(), middles.end(), [&](const auto& one) {
       return one.second.surface == Middle::kBorder && one.second.sagitta_mm > chord_mm_;
     });
@@ -393,6 +401,7 @@ class Refiner {
     for (auto& [key, middle] : middles) {
       if (!(middle.sagitta_mm > chord_mm_)) {
         most_sagitta_ = std::max(most_sagitta_, middle.sagitta_mm);
+        settled_.insert(number_of(key));
         continue;
       }
       if (on_borders && middle.surface != Middle::kBorder) continue;
@@ -424,8 +433,12 @@ class Refiner {
     std::array<Corner, 3> m;
     int count = 0;
     for (size_t k = 0; k < 3; ++k) {
-      m[k] = {middles.at(key_of(f.corners[k], f.corners[(k + 1) % 3])).vertex, along(f, k, 0.5)};
-      if (m[k].vertex == kNone) continue;
+      const auto found = middles.find(key_of(f.corners[k], f.corners[(k + 1) % 3]));
+      if (found == middles.end() || found->second.vertex == kNone) {
+        m[k].vertex = kNone;
+        continue;
+      }
+      m[k] = {found->second.vertex, along(f, k, 0.5)};
       ++count;
       if (is_curved(f)) m[k].uv = parameters_near(surface_of(f), m[k].uv, points_[m[k].vertex]);
     }
@@ -461,7 +474,8 @@ class Refiner {
   }
 
   const surface::UnderFacets& under_;
-  double chord_mm_, most_sagitta_ = 0.0;
+  double chord_mm_, most_sagitta_ = 0.0;  ///< of sides that are settled
+  std::unordered_set<uint64_t> settled_;  ///< number_of() sides
   std::vector<Vec3> points_;
   std::vector<FineFacet> facets_;
   std::vector<std::optional<int>> straight_;       ///< of each surface: straight_lines()

@@ -239,7 +239,14 @@ void check_design_mesh(const TriMesh& mesh, const std::string& path, const Box* 
   const WeldedMesh welded = weld(mesh);
   const bool closed = check_edges(welded, where, name, diagnostics);
   const double volume = volume_of(welded);
-  if (closed && volume < 0.0) {
+  const Vec3 size = bounds(mesh).size();
+  constexpr double kLeastShare = 1e-9;  // of the greatest extent's cube
+  if (closed && std::abs(volume) <= kLeastShare * std::pow(size.maxCoeff(), 3)) {
+    diagnostics.error(
+        "mesh-no-volume", where,
+        fmt::format("the {} encloses no volume ({:.3g} mm3): a sheet of zero thickness", name, volume),
+        "export a solid body");
+  } else if (closed && volume < 0.0) {
     diagnostics.error("mesh-inverted", where,
                       fmt::format("the {} is inside out: it encloses {:.3f} mm3", name, volume),
                       "turn all its facets round (\"flip normals\")");

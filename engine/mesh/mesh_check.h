@@ -43,6 +43,7 @@ double enclosed_volume(const TriMesh& mesh);
 ///   mesh-non-manifold   edges shared by more than two facets
 ///   mesh-turned-facets  edges that both neighbours run through in the same direction
 ///   mesh-inverted       closed, but the enclosed volume is negative
+///   mesh-no-volume      closed, and it encloses none
 ///   mesh-in-inches      25.4 times larger it would lie inside the stock; it fills < 1/15 of it now
 ///   mesh-scaled-by-25   the other way round
 ///   mesh-outside-stock  it reaches beyond the stock: material that cannot be there

@@ -171,9 +171,11 @@ class GougeSearch {
  private:
   /// All of `blocked` are clear at `high`, not at `low`: the least depth between at which all are.
   double narrowed(double low, double high, std::vector<Blocked> blocked, GougeBound& result) {
-    constexpr double kShare = 0.01, kLeast = 2e-5;
+    // Within the limit nothing is left to decide: a bound near enough to read.
+    const double share = result.open > 0 ? 0.01 : 0.2;
+    constexpr double kLeast = 2e-5;
     if (!blocked.empty()) result.place = place_of(blocked.front());
-    while (high - low > std::max(kShare * high, kLeast) && !in_.progress.stop_requested()) {
+    while (high - low > std::max(share * high, kLeast) && !in_.progress.stop_requested()) {
       const double middle = 0.5 * (low + high);
       std::vector<Blocked> still = blocked_at(middle, blocked);
       if (still.empty()) {

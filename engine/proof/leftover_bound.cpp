@@ -1,6 +1,7 @@
 #include "proof/leftover_bound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -16,6 +17,8 @@ constexpr size_t kCellsPerTask = 64;
 constexpr double kTopVoxels = 3.2;
 /// Rounds, each above what the one before has found.
 constexpr int kRounds = 8;
+/// Tasks between two looks at the number of parts, and two steps of the progress.
+constexpr size_t kSlice = 64;
 /// What is asked for above a leftover that was found: mm, and share.
 constexpr double kGap = 4e-5, kGapShare = 5e-4;
 
@@ -62,13 +65,16 @@ struct TaskResult {
   double open_mm = 0.0;  ///< nothing of what stays open far from the design is farther off it
 };
 
+/// Facets that hold the raw stock; null where it is a box.
+std::unique_ptr<const SolidDesign> raw_facets(const stock::Stock& stock) {
+  if (stock.raw().is_box()) return nullptr;
+  return std::make_unique<const SolidDesign>(stock.raw().mesh_around(), 0.0);
+}
+
 class LeftoverSearch {
  public:
   explicit LeftoverSearch(const LeftoverQuestion& in)
-      : in_(in), index_(in.sweeps, in.cutters), cells_(in.design.cells()) {
-    const stock::RawShape& raw = in.stock.raw();
-    if (!raw.is_box()) raw_ = std::make_unique<SolidDesign>(raw.mesh_around(), 0.0);
-  }
+      : in_(in), index_(in.sweeps, in.cutters), cells_(in.design.cells()), raw_(raw_facets(in.stock)) {}
 
   LeftoverBound run() {
     result_.regions = cells_.size();
@@ -107,26 +113,25 @@ class LeftoverSearch {
 
   /// Those in which material above `above` was met.
   std::vector<uint32_t> prove_cells(const std::vector<uint32_t>& todo, double above, int round) {
-    std::vector<RegionState> states(todo.size(), RegionState::kProven);
+    if (top_mm_ <= above) return {};
+    std::vector<RegionState> states(todo.size(), RegionState::kOpen);
     const size_t tasks = (todo.size() + kCellsPerTask - 1) / kCellsPerTask;
     std::vector<TaskResult> told(tasks);
-    constexpr size_t kSlice = 64;  // tasks between two steps of the progress
-    for (size_t first = 0; first < tasks && !in_.progress.stop_requested(); first += kSlice) {
+    for (size_t first = 0; first < tasks && !is_exhausted() && !in_.progress.stop_requested();
+         first += kSlice) {
       const size_t count = std::min(kSlice, tasks - first);
       parallel_chunks(count, 1, [&](size_t begin, size_t) {
         const size_t task = first + begin;
         RegionProver prover(in_, index_, raw_.get());
-        for (size_t i = task * kCellsPerTask; i < std::min(todo.size(), (task + 1) * kCellsPerTask); ++i) {
-          if (top_mm_ <= above) continue;
+        for (size_t i = task * kCellsPerTask; i < std::min(todo.size(), (task + 1) * kCellsPerTask); ++i)
           states[i] = prover.prove(region_of(cells_[todo[i]], above, top_mm_), above);
-        }
         told[task] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts()};
       });
+      for (size_t task = first; task < first + count; ++task) take(told[task]);
       if (round == 0)
         in_.progress.advance(in_.progress_from +
                              0.8 * static_cast<double>(first + count) / static_cast<double>(tasks));
     }
-    for (const TaskResult& one : told) take(one);
     std::vector<uint32_t> left;
     for (size_t i = 0; i < todo.size(); ++i) {
       if (states[i] == RegionState::kLeftover) left.push_back(todo[i]);
@@ -134,6 +139,8 @@ class LeftoverSearch {
     }
     return left;
   }
+
+  bool is_exhausted() const { return result_.parts >= in_.most_parts; }
 
   void take(const TaskResult& one) {
     result_.parts += one.parts;
@@ -152,7 +159,7 @@ class LeftoverSearch {
     const size_t nx = count(0), ny = count(1), nz = count(2);
     std::vector<TaskResult> told(nx * ny * nz);
     std::vector<uint8_t> states(told.size(), 0);
-    parallel_chunks(told.size(), 1, [&](size_t n, size_t) {
+    const auto look_at = [&](size_t n) {
       if (in_.progress.stop_requested()) return;
       const Vec3 low = box.lower + side * Vec3(static_cast<double>(n % nx), static_cast<double>(n / nx % ny),
                                                static_cast<double>(n / nx / ny));
@@ -161,10 +168,14 @@ class LeftoverSearch {
       const RegionState state = prove_cube(prover, low, side, std::max(above, top_mm_), above, open_mm);
       states[n] = static_cast<uint8_t>(state);
       told[n] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts(), open_mm};
-    });
-    for (const TaskResult& one : told) {
-      take(one);
-      far_open_mm_ = std::max(far_open_mm_, one.open_mm);
+    };
+    for (size_t first = 0; first < told.size(); first += kSlice) {
+      const size_t count = std::min(kSlice, told.size() - first);
+      parallel_chunks(count, 1, [&](size_t n, size_t) { look_at(first + n); });
+      for (size_t n = first; n < first + count; ++n) {
+        take(told[n]);
+        far_open_mm_ = std::max(far_open_mm_, told[n].open_mm);
+      }
     }
     bool clear = true;
     for (const uint8_t state : states) {
@@ -185,7 +196,7 @@ class LeftoverSearch {
     if (side < kLeast * in_.stock.voxel_mm()) {
       const Region cube{box_polytope({low, low + Vec3::Constant(side)}),
                         {Vec3::Zero(), Vec3::Zero(), within}};
-      const RegionState state = prover.prove(cube, above);
+      const RegionState state = is_exhausted() ? RegionState::kOpen : prover.prove(cube, above);
       if (state == RegionState::kOpen)
         open_mm = std::max(open_mm, in_.design.distance().at(centre).distance_mm + radius);
       return state;
@@ -213,7 +224,7 @@ class LeftoverSearch {
   const LeftoverQuestion& in_;
   measure::SweepIndex index_;
   std::vector<FeatureCell> cells_;
-  std::unique_ptr<const SolidDesign> raw_;  ///< facets that hold the raw stock; null where it is a box
+  std::unique_ptr<const SolidDesign> raw_;
   double top_mm_ = 0.0;
   std::vector<uint32_t> open_;
   size_t far_open_ = 0;       ///< of the last round
@@ -222,6 +233,21 @@ class LeftoverSearch {
 };
 
 }  // namespace
+
+std::vector<uint8_t> which_stand(const LeftoverQuestion& question, std::span<const Vec3> tops) {
+  const measure::SweepIndex index(question.sweeps, question.cutters);
+  const std::unique_ptr<const SolidDesign> raw = raw_facets(question.stock);
+  const RegionProver prover(question, index, raw.get());
+  constexpr double kLeast = 1e-5;  // mm
+  std::vector<uint8_t> stand;
+  for (const Vec3& top : tops) {
+    const Vec3 down = question.design.distance().at(top).foot - top;
+    const std::array<double, 5> shares{kLeast / std::max(down.norm(), kLeast), 1e-3, 0.03, 0.2, 0.5};
+    stand.push_back(std::any_of(shares.begin(), shares.end(),
+                                [&](double share) { return prover.is_leftover(top + share * down); }));
+  }
+  return stand;
+}
 
 LeftoverBound bound_leftover(const LeftoverQuestion& question) {
   return LeftoverSearch(question).run();

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/progress.h"
 #include "measure/sweep_cutters.h"
@@ -35,6 +36,8 @@ struct LeftoverQuestion {
   double known_mm = 0.0;        ///< what rays have found
   Progress& progress;
   double progress_from = 0.0;  ///< advanced from here by 1
+  /// Parts of regions that are looked at in all, a minute or so; regions beyond them stay open.
+  size_t most_parts = 20'000'000;
 };
 
 struct LeftoverBound {
@@ -46,6 +49,10 @@ struct LeftoverBound {
   double open_area_mm2 = 0.0;
   size_t regions = 0, parts = 0;
 };
+
+/// Of each place where material ends by the rays, W, mm: 1 where there is material just below it. Sweeps that
+/// meet edge to edge leave a ray between them and nothing else.
+std::vector<uint8_t> which_stand(const LeftoverQuestion& question, std::span<const Vec3> tops);
 
 /// The chord of the design's facets is not included. Interrupted, it proves nothing.
 LeftoverBound bound_leftover(const LeftoverQuestion& question);

@@ -12,14 +12,23 @@ namespace {
 constexpr double kTouch = 1e-6;
 /// A region is divided no further below this share of what is allowed, mm.
 constexpr double kSmallestShare = 0.01, kSmallest = 2e-6;
-constexpr size_t kMostParts = 4000;  ///< of one region
-constexpr size_t kRemembered = 6;    ///< sets that closed the regions before
-constexpr size_t kHolders = 8;       ///< sets around a centre that are tried for a whole part
+constexpr size_t kMostParts = 4000;   ///< of one region
+constexpr size_t kNearestTried = 12;  ///< sweeps with the nearest tips
+constexpr size_t kRemembered = 6;     ///< sets that closed the regions before
+constexpr size_t kHolders = 8;        ///< sets around a centre that are tried for a whole part
 
 double most_over(const ConvexSet& set, const Polytope& body) {
   double most = -std::numeric_limits<double>::infinity();
   for (const Vec3& corner : body.corners) most = std::max(most, value(set, corner));
   return most;
+}
+
+/// Squared distance of a place from the line that the tip passes, mm2.
+double tip_distance2(const stock::Sweep& sweep, const Vec3& x) {
+  const Vec3 way = sweep.end.tip_W - sweep.start.tip_W, from = x - sweep.start.tip_W;
+  const double length2 = way.squaredNorm();
+  const double share = length2 > 0.0 ? std::clamp(from.dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (from - share * way).squaredNorm();
 }
 
 bool holds(const ConvexSet& set, const Polytope& body, double tolerance_mm) {
@@ -68,6 +77,32 @@ bool RegionProver::is_closed_by_last(const Polytope& body) {
   return false;
 }
 
+/// Those whose tips pass nearest are tried first: of a thousand sweeps over a floor one of them holds most
+/// bodies, and to look at all of them takes long.
+bool RegionProver::is_closed_by_nearest(const Polytope& body, const Vec3& centre,
+                                        const std::vector<uint32_t>& sweeps) {
+  nearest_.clear();
+  for (const uint32_t n : sweeps) nearest_.emplace_back(tip_distance2(in_.sweeps[n], centre), n);
+  const size_t count = std::min(kNearestTried, nearest_.size());
+  std::partial_sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(count), nearest_.end());
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t n = nearest_[i].second;
+    const stock::CutterSolid& cutter = in_.cutters[n];
+    for (uint32_t piece = 0; piece < cutter.pieces.size(); ++piece) {
+      const SweepSet set(in_.sweeps[n], cutter, piece, centre);
+      if (!holds(set, body, kTouch)) continue;
+      remember({set, n, piece});
+      return true;
+    }
+  }
+  return false;
+}
+
+void RegionProver::remember(const Candidate& one) {
+  last_.push_front(one);
+  if (last_.size() > kRemembered) last_.pop_back();
+}
+
 /// The raw stock's surface near the body lies below a plane that the whole body is above.
 bool RegionProver::is_beyond_raw(const Polytope& body, const Vec3& centre, double radius) const {
   const stock::RawShape& raw = in_.stock.raw();
@@ -97,11 +132,9 @@ void RegionProver::keep_crossing_raw(Part& part) const {
   });
 }
 
-void RegionProver::find_candidates(const Polytope& body, const Vec3& centre, double radius) {
+void RegionProver::find_candidates(const std::vector<uint32_t>& sweeps, const Vec3& centre, double radius) {
   candidates_.clear();
-  std::vector<uint32_t> found;
-  index_.find(body.box(), found);
-  for (const uint32_t n : found) {
+  for (const uint32_t n : sweeps) {
     const stock::CutterSolid& cutter = in_.cutters[n];
     for (uint32_t piece = 0; piece < cutter.pieces.size(); ++piece) {
       const SweepSet set(in_.sweeps[n], cutter, piece, centre);
@@ -234,7 +267,10 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
     if (part.raw_facets.empty() && raw_->distance().at(centre).distance_mm > 0.0) return std::nullopt;
   }
   if (part.is_root) {
-    find_candidates(part.body, centre, radius);
+    found_.clear();
+    index_.find(part.body.box(), found_);
+    if (is_closed_by_nearest(part.body, centre, found_)) return std::nullopt;
+    find_candidates(found_, centre, radius);
     for (uint32_t n = 0; n < candidates_.size(); ++n) part.near.push_back(n);
   }
   std::vector<std::pair<double, uint32_t>> around;
@@ -253,8 +289,7 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
     const Candidate& one = candidates_[around[i].second];
     const double most = most_over(one.set, part.body);
     if (most <= kTouch) {
-      last_.push_front(one);
-      if (last_.size() > kRemembered) last_.pop_back();
+      remember(one);
       return std::nullopt;
     }
     if (most >= least) continue;

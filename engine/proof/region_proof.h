@@ -33,6 +33,9 @@ class RegionProver {
   /// From a leftover place to others farther off the design, as long as a step to any side finds one.
   void look_around(const Vec3& x, double height_mm);
 
+  /// In the raw stock, and farther than a touch from all that the sweeps remove.
+  bool is_leftover(const Vec3& x) const;
+
   double found_mm() const { return found_mm_; }
   const Vec3& top() const { return top_; }
   const Vec3& foot() const { return foot_; }
@@ -52,20 +55,23 @@ class RegionProver {
   };
 
   bool is_closed_by_last(const Polytope& body);
+  bool is_closed_by_nearest(const Polytope& body, const Vec3& centre, const std::vector<uint32_t>& sweeps);
+  void remember(const Candidate& one);
   bool is_beyond_raw(const Polytope& body, const Vec3& centre, double radius) const;
   void keep_crossing_raw(Part& part) const;
-  void find_candidates(const Polytope& body, const Vec3& centre, double radius);
+  void find_candidates(const std::vector<uint32_t>& sweeps, const Vec3& centre, double radius);
   std::optional<RegionState> look_at(Part& part, const Region& region, double above_mm);
   void split(Part& part, const ConvexSet* by, const Vec3& centre);
   mesh::SignedPoint nearest(const Vec3& x, const Region& region, double above_mm) const;
-  bool is_leftover(const Vec3& x) const;
   void climb(const Vec3& x, double height_mm);
 
   const LeftoverQuestion& in_;
   const measure::SweepIndex& index_;
   const SolidDesign* raw_;
   std::vector<Candidate> candidates_;
-  std::deque<Candidate> last_;  ///< that closed a region, the newest first
+  std::vector<uint32_t> found_;                       ///< sweeps near the root
+  std::vector<std::pair<double, uint32_t>> nearest_;  ///< of them, by the distance of their tips
+  std::deque<Candidate> last_;                        ///< that closed a region, the newest first
   std::vector<Part> stack_;
   size_t parts_ = 0, region_parts_ = 0;
   double found_mm_ = 0.0;

@@ -24,18 +24,17 @@ double turn_between(const Vec3& a, const Vec3& b) {
 }
 
 /// Greatest d . x over a body that stands in the tool's frame; d of length 1.
-double reach_at_home(const collision::RevolvedSolid& solid, const Vec3& d) {
-  const double across = d.head<2>().norm();
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Vec2& ring : solid.corners) most = std::max(most, across * ring.x() + d.z() * ring.y());
-  return most;
+double reach_at_home(const MeridianProfile& profile, const Vec3& d) {
+  return profile.greatest({d.head<2>().norm(), d.z()});
 }
 
 /// A body over a part of a sweep's time.
 class SpanBody {
  public:
-  SpanBody(const stock::Sweep& sweep, const collision::RevolvedSolid& solid, double t0, double t1)
-      : solid_(solid), turn_(turn_between(sweep.start.axis_W, sweep.end.axis_W)) {
+  SpanBody(const stock::Sweep& sweep, const MeridianProfile& profile, double t0, double t1)
+      : profile_(profile),
+        solid_(profile.solid()),
+        turn_(turn_between(sweep.start.axis_W, sweep.end.axis_W)) {
     const stock::SweepMap map = stock::sweep_map(sweep);
     const std::array<double, 2> times{t0, t1};
     for (size_t i = 0; i < 2; ++i) {
@@ -46,7 +45,7 @@ class SpanBody {
     }
     if (turn_ == 0.0) return;
     double lever = 0.0;
-    for (const Vec2& ring : solid.corners) lever = std::max(lever, ring.norm());
+    for (const Vec2& ring : solid_.corners) lever = std::max(lever, ring.norm());
     stray_mm_ = stock::motion_bound(map, lever);
     const double part = turn_ * (t1 - t0);
     sagitta_per_lever_ = part * part / 8.0;
@@ -61,17 +60,16 @@ class SpanBody {
     const Vec3 wide = Vec3::Constant(stray_mm_ + sagitta_mm_);
     return {box.lower.cwiseMin(other.lower) - wide, box.upper.cwiseMax(other.upper) + wide};
   }
-  /// Least n . x over it, n of length 1 in the work's frame.
-  double least_along(const Vec3& n) const {
-    double least = std::numeric_limits<double>::infinity();
+  /// Whether n . x >= limit all over it; n of length 1 in the work's frame.
+  bool is_beyond(const Vec3& n, double limit_mm) const {
+    bool is_near = false;
     for (const ToolPose& end : ends_) {
-      const double along = n.dot(end.axis_W), across = n.cross(end.axis_W).norm(), tip = n.dot(end.tip_W);
-      for (const Vec2& ring : solid_.corners) {
-        const double sagitta = turns() ? sagitta_per_lever_ * ring.norm() : 0.0;
-        least = std::min(least, tip + along * ring.y() - across * ring.x() - sagitta);
-      }
+      const Vec2 down(n.cross(end.axis_W).norm(), -n.dot(end.axis_W));
+      const double least = n.dot(end.tip_W) - profile_.greatest(down) - stray_mm_;
+      if (least < limit_mm) return false;
+      is_near = is_near || least - sagitta_mm_ < limit_mm;
     }
-    return least - stray_mm_;
+    return !is_near || least_along(n) >= limit_mm;
   }
   /// What the body may stray from the motion on straight lines in the tool's frame, mm.
   double stray_mm() const { return stray_mm_; }
@@ -98,6 +96,17 @@ class SpanBody {
   Vec3 top() const { return ends_[0].tip_W + solid_.corners.back().y() * ends_[0].axis_W; }
 
  private:
+  /// Least n . x over it, with the sagitta of each ring.
+  double least_along(const Vec3& n) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const ToolPose& end : ends_) {
+      const double along = n.dot(end.axis_W), across = n.cross(end.axis_W).norm(), tip = n.dot(end.tip_W);
+      for (const Vec2& ring : solid_.corners)
+        least =
+            std::min(least, tip + along * ring.y() - across * ring.x() - sagitta_per_lever_ * ring.norm());
+    }
+    return least - stray_mm_;
+  }
   ToolPose at(const stock::Sweep& sweep, double t) const {
     const Vec3 tip = sweep.start.tip_W + t * (sweep.end.tip_W - sweep.start.tip_W);
     if (turn_ == 0.0) return {tip, sweep.start.axis_W};
@@ -106,6 +115,7 @@ class SpanBody {
     return {tip, axis.normalized()};
   }
 
+  const MeridianProfile& profile_;
   const collision::RevolvedSolid& solid_;
   double turn_;  ///< of the whole sweep, rad
   std::array<ToolPose, 2> ends_;
@@ -118,14 +128,14 @@ class SpanBody {
 class Parting {
  public:
   /// `reaches`: known directions, of the body at home.
-  Parting(const SpanBody& body, const collision::RevolvedSolid& solid, std::vector<Reach>& reaches)
-      : body_(body), solid_(solid), reaches_(reaches), box_(body.box()), ends_(body.turns() ? 2 : 1) {
+  Parting(const SpanBody& body, const MeridianProfile& profile, std::vector<Reach>& reaches)
+      : body_(body), profile_(profile), reaches_(reaches), box_(body.box()), ends_(body.turns() ? 2 : 1) {
     for (const Reach& reach : reaches) planes_.push_back(plane_of(reach));
   }
 
   bool is_clear(const FacetGroup& group) const {
     if (!do_meet(box_, group.box)) return true;
-    if (body_.least_along(group.normal) >= group.top_mm) return true;
+    if (body_.is_beyond(group.normal, group.top_mm)) return true;
     // More of them cost more than they save.
     constexpr size_t kTried = 4;
     const Vec3 middle = 0.5 * (group.box.lower + group.box.upper), half = group.box.upper - middle;
@@ -147,10 +157,10 @@ class Parting {
       move_to_front(planes_, n);
       return true;
     }
-    if (body_.least_along(normal) >= normal.dot(facet[0])) return true;
+    if (body_.is_beyond(normal, normal.dot(facet[0]))) return true;
     const std::optional<Vec3> direction = body_.parting(facet);
     if (!direction) return false;
-    const Reach reach{*direction, reach_at_home(solid_, *direction)};
+    const Reach reach{*direction, reach_at_home(profile_, *direction)};
     reaches_.insert(reaches_.begin(), reach);
     planes_.insert(planes_.begin(), plane_of(reach));
     if (reaches_.size() > kKept) {
@@ -188,7 +198,7 @@ class Parting {
   }
 
   const SpanBody& body_;
-  const collision::RevolvedSolid& solid_;
+  const MeridianProfile& profile_;
   std::vector<Reach>& reaches_;
   Box box_;
   size_t ends_;                ///< of a plane, that count
@@ -212,17 +222,44 @@ Meeting meets_span(const SolidDesign& design, const SpanBody& body, Parting part
 
 }  // namespace
 
+MeridianProfile::MeridianProfile(const collision::RevolvedSolid& solid) : solid_(&solid) {
+  const auto turns_right = [&](const Vec2& c) {
+    const Vec2 &a = outer_[outer_.size() - 2], &b = outer_.back();
+    const Vec2 ab = b - a, bc = c - b;
+    return ab.x() * bc.y() - ab.y() * bc.x() <= 0.0;
+  };
+  for (const Vec2& corner : solid.corners) {
+    while (outer_.size() >= 2 && turns_right(corner)) outer_.pop_back();
+    outer_.push_back(corner);
+  }
+}
+
+double MeridianProfile::greatest(const Vec2& d) const {
+  // From the lowest corner to the highest the products rise, then fall.
+  size_t low = 0, high = outer_.size() - 1;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (d.dot(outer_[middle + 1] - outer_[middle]) > 0.0)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return d.dot(outer_[low]);
+}
+
 Meeting SweepPassage::meets(const stock::Sweep& sweep, const collision::RevolvedSolid& solid) {
-  std::vector<Reach>& reaches = reaches_[&solid];
+  const auto known = bodies_.try_emplace(&solid, solid).first;
+  const MeridianProfile& profile = known->second.profile;
+  std::vector<Reach>& reaches = known->second.reaches;
   if (reaches.empty())
     for (const Vec3& d : {Vec3(-Vec3::UnitZ()), Vec3(Vec3::UnitZ())})
-      reaches.push_back({d, reach_at_home(solid, d)});
+      reaches.push_back({d, reach_at_home(profile, d)});
   std::vector<std::array<double, 2>> spans{{0.0, 1.0}};
   while (!spans.empty()) {
     const auto [t0, t1] = spans.back();
     spans.pop_back();
-    const SpanBody body(sweep, solid, t0, t1);
-    const Meeting met = meets_span(design_, body, Parting(body, solid, reaches));
+    const SpanBody body(sweep, profile, t0, t1);
+    const Meeting met = meets_span(design_, body, Parting(body, profile, reaches));
     if (!met) continue;
     if (!body.turns() || t1 - t0 < kShortest) return met;
     const double middle = 0.5 * (t0 + t1);

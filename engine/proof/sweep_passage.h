@@ -27,6 +27,19 @@ struct Reach {
   double mm = 0.0;
 };
 
+/// How far a solid of revolution reaches, in the half-plane of its profile. The solid is borrowed.
+class MeridianProfile {
+ public:
+  explicit MeridianProfile(const collision::RevolvedSolid& solid);
+  const collision::RevolvedSolid& solid() const { return *solid_; }
+  /// Greatest d . (rho, z) over the profile; d.x() >= 0.
+  double greatest(const Vec2& d) const;
+
+ private:
+  const collision::RevolvedSolid* solid_;
+  std::vector<Vec2> outer_;  ///< the corners of its hull, from the lowest to the highest
+};
+
 /// For one thread: it remembers the directions that parted a body from facets, which part it from those
 /// beside them.
 class SweepPassage {
@@ -38,8 +51,14 @@ class SweepPassage {
   Meeting meets(const stock::Sweep& sweep, const collision::RevolvedSolid& solid);
 
  private:
+  struct KnownBody {
+    explicit KnownBody(const collision::RevolvedSolid& solid) : profile(solid) {}
+    MeridianProfile profile;
+    std::vector<Reach> reaches;  ///< the latest first
+  };
+
   const SolidDesign& design_;
-  std::map<const collision::RevolvedSolid*, std::vector<Reach>> reaches_;  ///< the latest first
+  std::map<const collision::RevolvedSolid*, KnownBody> bodies_;
 };
 
 }  // namespace swarf::proof

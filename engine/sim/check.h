@@ -46,6 +46,7 @@ struct Finding {
   double amount_mm = 0.0;         ///< how deep, high or near; 0: not said
   std::string cause{};            ///< what made it, for those of one code: "holder of T3", "axis X"
   double reach_mm = 0.0;          ///< places of one cause this near each other are one fault
+  SourceLocation earlier{};       ///< block of an earlier set-up that cut the place; line 0: none did
 };
 
 /// No check fails or is not proven. Of an empty list, a run that was not finished: false.

@@ -516,7 +516,7 @@ Result simulate(const Job& job, const CutOptions& options, Progress& progress) {
     throw with_warnings(result.main.warnings, blocks_miss_stock(job, result.main.path.elements));
   cut_dexels(job, result.main, progress, options.ranks);
   measure_part(job, progress, result);
-  prove_part(job, options.ranks, progress, result);
+  prove_part(job, options, progress, result);
   if (options.ranks != nullptr) dismiss_ranks(*options.ranks);  // they end while this one writes
   end_on_part(job, result.main);
   measure_flank(job, progress, result);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "brep/model.h"
 #include "sim/job/mesh_unit.h"
 #include "sim/job/ruled_faces.h"
 #include "surface/analytic.h"
@@ -237,9 +238,11 @@ DesignSettings read_design(ConfigTable table, bool cl) {
   }
   if (design.name == "mesh" || design.name == "step") {
     design.kind = DesignKind::kMesh;
-    design.mesh_key = design.name;
     design.mesh_file = table.text(design.name);
     design.mesh_where = table.where(design.name);
+    // A CAD file is one by its name, whatever key it stands behind.
+    if (brep::is_cad_file(design.mesh_file)) design.name = "step";
+    design.mesh_key = design.name;
     if (design.name == "mesh") {
       const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
       if (table.has("mesh_unit")) design.mesh_unit_mm = unit_mm_of(unit);

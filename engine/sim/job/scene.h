@@ -85,6 +85,7 @@ enum class TrajectoryFormat { kNone, kCsv, kH5 };
 /// What a run writes besides what it always does.
 struct OutputSettings {
   TrajectoryFormat trajectory = TrajectoryFormat::kNone;
+  double budget_s = 0.0;  ///< after which proofs end and no further picture is begun; 0: no end
 };
 
 /// What the scene's program is. Only sim/job asks (tests/lint/rooms.py); what follows from it is data:

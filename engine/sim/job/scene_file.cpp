@@ -127,6 +127,7 @@ OutputSettings read_output(ConfigTable table) {
   OutputSettings output;
   const std::string format = table.choice("trajectory", {"none", "csv", "h5"}, "none");
   if (format != "none") output.trajectory = format == "csv" ? TrajectoryFormat::kCsv : TrajectoryFormat::kH5;
+  if (table.has("budget_s")) output.budget_s = table.number("budget_s", kAboveZero, 1.0);
   return output;
 }
 

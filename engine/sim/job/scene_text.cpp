@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "brep/model.h"
 #include "mesh/scene_reader.h"
 
 namespace swarf::sim {
@@ -84,7 +85,9 @@ std::string scene_text(const JobFlags& flags) {
   add("tools", flags.tools);
   add("tool_table", flags.tool_table);
   text += setup_text(flags) + stock_text(flags);
-  if (!flags.design.empty()) text += "\n[design]\nmesh = " + toml_string(flags.design) + "\n";
+  if (!flags.design.empty())
+    text += fmt::format("\n[design]\n{} = {}\n", brep::is_cad_file(flags.design) ? "step" : "mesh",
+                        toml_string(flags.design));
   // A first look: one picture, in seconds.
   text += "\n[movie]\nseconds = 0\n\n[stills]\nkinds = [\"part\"]\nsize = [960, 540]\nsamples = 6\n";
   return text;

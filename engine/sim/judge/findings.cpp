@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -50,9 +51,15 @@ class Collector {
                     const std::vector<SweepSource>& sources, uint32_t block) {
     if (block >= sources.size()) {
       const size_t carried = block - sources.size();
-      if (carried < result_.main.carried->rays.sweeps.size())
-        text += "; it was cut " + carried_place(result_.main.carried->rays, carried);
-      return add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
+      const CarriedSweeps& before = result_.main.carried->rays;
+      const bool is_earlier = carried < before.sweeps.size();
+      const SourceLocation earlier = is_earlier ? carried_block(before, carried) : SourceLocation{};
+      if (is_earlier)
+        text += fmt::format("; it was cut {}, {}:{}", carried_place(before, carried),
+                            std::filesystem::path(earlier.file).filename().string(), earlier.line);
+      Finding& added = add(std::move(code), std::move(text), std::move(fix), {job_.scene.program_file}, 0.0);
+      added.earlier = earlier;
+      return added;
     }
     const SweepSource& source = sources[block];
     const cutter::Cutter& tool = job_.scene.tools[static_cast<size_t>(source.tool)];
@@ -118,9 +125,11 @@ void not_proven(const Job& job, const Result& result, Collector& collect) {
   const Check& check = collect.check();
   if (check.outcome != Outcome::kNotProven) return;
   const std::string what = fmt::format("{}: {}", check.subject, check.reason);
-  if (!check.bound && result.stopped) {
-    collect.add(check.name + "-not-proven", what, "let the run come to its end", {job.scene.program_file},
-                0.0);
+  if (!check.bound && (result.stopped || job.scene.output.budget_s > 0.0)) {
+    collect.add(
+        check.name + "-not-proven", what,
+        result.stopped ? "let the run come to its end" : "give it more time (--budget, output.budget_s)",
+        {job.scene.program_file}, 0.0);
     return;
   }
   // To the next thousandth upwards: what is said is allowed.

@@ -43,10 +43,17 @@ Check counted(std::string name, std::string subject, size_t count, int allowed) 
   return check;
 }
 
-/// A measure of the finished part against its limit of [accept].
-/// `stopped`: before a proof was finished.
+/// Why a proof has no bound.
+std::string unfinished_reason(const Job& job, const Result& result) {
+  if (result.stopped) return "the run was stopped before the proof between the rays was finished";
+  const double budget_s = job.scene.output.budget_s;
+  return budget_s > 0.0 ? fmt::format("the time budget of {:g} s ended the proof", budget_s)
+                        : "the proof between the rays was not finished";
+}
+
+/// A measure of the finished part against its limit of [accept]. `unfinished`: unfinished_reason().
 Check measured(std::string name, std::string subject, std::optional<double> limit, double value,
-               const std::optional<measure::Bound>& bound, bool stopped) {
+               const std::optional<measure::Bound>& bound, const std::string& unfinished) {
   Check check{std::move(name), std::move(subject)};
   check.unit = kMicrometres;
   check.value = value;
@@ -66,15 +73,12 @@ Check measured(std::string name, std::string subject, std::optional<double> limi
     check.outcome = Outcome::kHolds;
   } else {
     check.outcome = Outcome::kNotProven;
-    check.reason =
-        !check.bound
-            ? fmt::format("not proven below {} um: {}", limit_text(*limit),
-                          stopped ? "the run was stopped before the proof between the rays was finished"
-                                  : "the proof between the rays was not finished")
-            : fmt::format(
-                  "not proven below {} um: proven {} um at "
-                  "({:.3f}, {:.3f}, {:.3f}) mm",
-                  limit_text(*limit), text(bound->um), bound->place.x(), bound->place.y(), bound->place.z());
+    check.reason = !check.bound ? fmt::format("not proven below {} um: {}", limit_text(*limit), unfinished)
+                                : fmt::format(
+                                      "not proven below {} um: proven {} um at "
+                                      "({:.3f}, {:.3f}, {:.3f}) mm",
+                                      limit_text(*limit), text(bound->um), bound->place.x(), bound->place.y(),
+                                      bound->place.z());
   }
   return check;
 }
@@ -145,18 +149,19 @@ void add_surface_checks(const Job& job, const Result& result, std::vector<Check>
   }
   const SurfaceMetrics& surface = result.main.surface;
   const AcceptLimits& accept = job.scene.accept;
-  Check deepest = measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound,
-                           result.stopped);
+  const std::string unfinished = unfinished_reason(job, result);
+  Check deepest =
+      measured("gouge", gouge, accept.gouge_max_um, surface.gouge_max_um, surface.gouge_bound, unfinished);
   if (deepest.outcome == Outcome::kFails && surface.gouge_block == stock::kUncut)
     deepest.reason = "the stock has no material there: nobody has cut it";
   judge_without_limit(surface, deepest);
   checks.push_back(std::move(deepest));
   Check highest = measured("excess", excess, accept.excess_max_um, surface.excess_max_um,
-                           surface.excess_bound, result.stopped);
+                           surface.excess_bound, unfinished);
   judge_left_without_limit(job, result, highest);
   checks.push_back(std::move(highest));
   checks.push_back(measured("scallop", scallop, accept.scallop_max_um, surface.scallop_max_um,
-                            surface.scallop_bound, result.stopped));
+                            surface.scallop_bound, unfinished));
   checks.push_back(reached_check(job, result));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/hash.h"
@@ -49,6 +50,19 @@ void append(const JobSweeps& own, const Pose& X_WE, size_t first_solid, const st
   all.error_bound_mm = std::max(all.error_bound_mm, own.error_bound_mm);
 }
 
+/// Before the sweeps themselves.
+void append_blocks(const JobSweeps& own, const toolpath::Elements& elements, CarriedSweeps& all) {
+  int last = -1;
+  for (size_t n = 0; n < own.sweeps.size(); ++n) {
+    const int element = own.sources[own.sweeps[n].block].element;
+    if (element == last) continue;
+    last = element;
+    const SourceLocation where = elements.where(static_cast<size_t>(element));
+    if (all.files.empty() || all.files.back() != where.file) all.files.push_back(where.file);
+    all.blocks.push_back({all.sweeps.size() + n, static_cast<uint32_t>(all.files.size() - 1), where.line});
+  }
+}
+
 std::string spoken_place(const EarlierSetup& earlier) {
   const Scene& scene = earlier.job->scene;
   if (earlier.other_run) return "in the run of " + scene.title;
@@ -93,9 +107,10 @@ CarriedCutsPtr carried_cuts(const Job& job) {
     const std::string where = spoken_place(setup);
     append(stock_sweeps(*setup.job, *motion.cycles, job.scene.stock.sweep_tolerance_mm), setup.X_WE,
            first_solid, where, all->stock);
-    if (job.has_design())
-      append(ray_sweeps(*setup.job, *motion.cycles, job.scene.design.sweep_tolerance_mm), setup.X_WE,
-             first_solid, where, all->rays);
+    if (!job.has_design()) continue;
+    const JobSweeps rays = ray_sweeps(*setup.job, *motion.cycles, job.scene.design.sweep_tolerance_mm);
+    append_blocks(rays, motion.path.elements, all->rays);
+    append(rays, setup.X_WE, first_solid, where, all->rays);
   }
   return all;
 }
@@ -113,7 +128,7 @@ std::string CarriedCuts::text() const {
 
 size_t CarriedCuts::bytes() const {
   const size_t sweeps = stock.sweeps.capacity() + rays.sweeps.capacity();
-  return sweeps * (sizeof(stock::Sweep) + sizeof(int));
+  return sweeps * (sizeof(stock::Sweep) + sizeof(int)) + rays.blocks.capacity() * sizeof(CarriedBlock);
 }
 
 bool cut_carried(stock::Stock& stock, const CarriedCuts& cuts, Progress* progress) {
@@ -142,6 +157,14 @@ stock::Stock starting_stock(const Job& job, const CarriedCuts& cuts, double voxe
 const std::string& carried_place(const CarriedSweeps& carried, size_t sweep) {
   const auto setup = std::upper_bound(carried.ends.begin(), carried.ends.end(), sweep);
   return carried.where[static_cast<size_t>(setup - carried.ends.begin())];
+}
+
+SourceLocation carried_block(const CarriedSweeps& carried, size_t sweep) {
+  const auto next =
+      std::upper_bound(carried.blocks.begin(), carried.blocks.end(), sweep,
+                       [](size_t one, const CarriedBlock& block) { return one < block.first_sweep; });
+  const CarriedBlock& block = *std::prev(next);
+  return {carried.files[block.file], block.line};
 }
 
 }  // namespace swarf::sim

@@ -15,13 +15,22 @@
 
 namespace swarf::sim {
 
+/// A block of an earlier program, by the first of its sweeps.
+struct CarriedBlock {
+  size_t first_sweep = 0;
+  uint32_t file = 0;  ///< index into CarriedSweeps::files
+  int line = 0;
+};
+
 /// Sweeps in the order in which they cut, W of this set-up; Sweep::block is the index.
 struct CarriedSweeps {
   std::vector<stock::Sweep> sweeps;
-  std::vector<int> solids;         ///< of each sweep, index into CarriedCuts::solids
-  std::vector<std::string> where;  ///< of each set-up that has cut: in words
-  std::vector<size_t> ends;        ///< of each set-up: behind its last sweep
-  double error_bound_mm = 0.0;     ///< greatest distance between the sweeps and the motion they stand for
+  std::vector<int> solids;           ///< of each sweep, index into CarriedCuts::solids
+  std::vector<std::string> where;    ///< of each set-up that has cut: in words
+  std::vector<size_t> ends;          ///< of each set-up: behind its last sweep
+  std::vector<CarriedBlock> blocks;  ///< of sweeps for the rays
+  std::vector<std::string> files;    ///< that the blocks stand in
+  double error_bound_mm = 0.0;       ///< greatest distance between the sweeps and the motion they stand for
 };
 
 struct CarriedCuts {
@@ -61,5 +70,8 @@ void for_each_solid(const CarriedSweeps& carried, size_t begin, size_t end, cons
 
 /// "in set-up 1, first side" of a sweep.
 const std::string& carried_place(const CarriedSweeps& carried, size_t sweep);
+
+/// The block of the earlier program that a sweep for the rays belongs to.
+SourceLocation carried_block(const CarriedSweeps& carried, size_t sweep);
 
 }  // namespace swarf::sim

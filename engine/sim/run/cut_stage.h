@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "base/ranks.h"
+#include "base/time_budget.h"
 #include "sim/job/scene.h"
 #include "sim/run/in_process_stock.h"
 #include "sim/run/memory.h"
@@ -35,6 +36,7 @@ struct CutOptions {
   Outputs outputs;                     ///< what follows: its memory counts
   std::vector<std::string> overrides;  ///< of the scene, for the record
   Ranks* ranks = nullptr;              ///< cut tile by tile with these (tile_ranks.h); null: alone
+  TimeBudget budget;                   ///< of the whole run; cutting and measuring always end
 };
 
 inline constexpr const char* kRecordFile = "run.record";

@@ -5,11 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/time_budget.h"
 #include "base/units.h"
 #include "mesh/mesh_check.h"
 #include "proof/gouge_bound.h"
 #include "proof/leftover_bound.h"
 #include "proof/missing_bound.h"
+#include "sim/run/cut_stage.h"
 #include "sim/run/result.h"
 #include "sim/run/tile_ranks.h"
 
@@ -179,6 +181,102 @@ void tell_distances(const proof::SolidDesign& design, measure::SurfaceMetrics& s
     lower(surface.gouge_max_um, -design.distance().at(surface.gouge_bottom).distance_mm);
 }
 
+/// What both proofs of a body ask about.
+struct BodyQuestion {
+  const Job& job;
+  const measure::SweepCutters& cutters;
+  const proof::SolidDesign& design;  ///< on the facets of the gouges
+  Slack slack;
+  Progress& progress;
+  Result& result;
+};
+
+double allowed_excess_um(const AcceptLimits& accept) {
+  return accept.excess_max_um.value_or(accept.scallop_max_um.value_or(kExcessAllowed));
+}
+
+/// False: it was ended before it was finished, and proves nothing.
+bool prove_gouges(const BodyQuestion& in) {
+  measure::SurfaceMetrics& surface = in.result.main.surface;
+  const double limit_um = in.job.scene.accept.gouge_max_um.value_or(kGougeAllowed);
+  proof::GougeBound gouges = proof::bound_gouges({in.design, in.result.main.rays.sweeps, in.cutters,
+                                                  asked_mm(limit_um, in.slack.gouge_mm),
+                                                  surface.gouge_max_um * kMicrometre, in.progress});
+  if (in.progress.stop_requested()) return false;
+  gouges.bound_mm = std::max(gouges.bound_mm, out_of_stock(*in.job.proof.mesh, in.result.stock->raw()));
+  take_gouges(gouges, in.slack.gouge_mm, limit_um, surface);
+  surface.gouge_regions = keep_worst(surface.gouges);
+  return true;
+}
+
+/// What was met of it counts, finished or not.
+void take_found_leftover(const proof::LeftoverBound& found, double limit_um,
+                         measure::SurfaceMetrics& surface) {
+  const double found_um = um_from_mm(found.found_mm);
+  if (found_um <= surface.excess_max_um) return;
+  surface.excess_max_um = found_um;
+  surface.excess_block = block_near(surface.excesses, found.foot);
+  surface.excess_top = found.top;
+  add_found(surface.excesses, {found_um, 0.0, 0.0, found.foot, surface.excess_block, 0, 0, found.top},
+            limit_um);
+}
+
+/// False as prove_gouges.
+bool prove_leftover(const BodyQuestion& in) {
+  const Job& job = in.job;
+  measure::SurfaceMetrics& surface = in.result.main.surface;
+  const double limit_um = allowed_excess_um(job.scene.accept);
+  std::optional<proof::SolidDesign> coarser;
+  if (job.proof_outside.mesh != job.proof.mesh)
+    coarser.emplace(*job.proof_outside.mesh, job.proof_outside.chord_mm);
+  const auto left_over = [&](const proof::SolidDesign& facets, double slack_mm) {
+    return proof::bound_leftover({facets, in.result.main.rays.sweeps, in.cutters, *in.result.stock,
+                                  in.result.sweep_bound_mm, asked_mm(limit_um, slack_mm),
+                                  surface.excess_max_um * kMicrometre, in.progress, 1.0});
+  };
+  double slack_mm = in.slack.leftover_mm;
+  proof::LeftoverBound leftover = left_over(coarser ? *coarser : in.design, slack_mm);
+  // Between the limit and the limit less the wider slack the finer facets decide.
+  if (coarser && um_from_mm(leftover.bound_mm + slack_mm) > limit_um &&
+      um_from_mm(leftover.found_mm - slack_mm) <= limit_um) {
+    slack_mm = in.slack.gouge_mm;
+    leftover = left_over(in.design, slack_mm);
+  }
+  if (coarser && leftover.found_mm > 0.0) {
+    const mesh::SignedPoint seen = in.design.distance().at(leftover.top);
+    leftover.found_mm = seen.distance_mm;
+    leftover.foot = seen.foot;
+  }
+  const bool is_finished = !in.progress.stop_requested();
+  if (is_finished)
+    take_leftover(leftover, slack_mm, limit_um, surface);
+  else
+    take_found_leftover(leftover, limit_um, surface);
+  surface.excess_regions = keep_worst(surface.excesses);
+  return is_finished;
+}
+
+/// Material that rays have told and that is none: sweeps meet edge to edge there.
+void drop_seams(const BodyQuestion& in) {
+  measure::SurfaceMetrics& surface = in.result.main.surface;
+  std::vector<Vec3> tops{surface.excess_top};
+  for (const measure::Region& region : surface.excesses) tops.push_back(region.end);
+  const std::vector<uint8_t> stand =
+      proof::which_stand({in.design, in.result.main.rays.sweeps, in.cutters, *in.result.stock,
+                          in.result.sweep_bound_mm, 1.0, 0.0, in.progress},
+                         tops);
+  size_t n = 0;
+  std::erase_if(surface.excesses, [&](const measure::Region&) { return stand[++n] == 0; });
+  if (stand.front() != 0) return;
+  surface.excess_max_um = 0.0;
+  for (const measure::Region& region : surface.excesses) {
+    if (region.worst_um <= surface.excess_max_um) continue;
+    surface.excess_max_um = region.worst_um;
+    surface.excess_top = region.end;
+    surface.excess_block = region.block;
+  }
+}
+
 /// The proof of a design that is a body, by its sweeps and its features. False: what is asked for is not
 /// decided.
 bool prove_body(const Job& job, Progress& progress, Result& result) {
@@ -187,49 +285,20 @@ bool prove_body(const Job& job, Progress& progress, Result& result) {
   constexpr double kRounding = 2e-6;  // mm: a touch of both proofs
   const double strays = main.rays.error_bound_mm + kRounding;
   const Slack slack{job.proof.chord_mm + strays, job.proof_outside.chord_mm + strays};
-  const stock::RawShape& raw = result.stock->raw();
-  if (!is_provable_body(job, raw, slack)) return false;
-  const double gouge_um = accept.gouge_max_um.value_or(kGougeAllowed);
-  const double excess_um = accept.excess_max_um.value_or(accept.scallop_max_um.value_or(kExcessAllowed));
+  if (!is_provable_body(job, result.stock->raw(), slack)) return false;
   const RayCutters rays = ray_cutters(job, main);
   const measure::SweepCutters cutters(rays.solids, rays.solid_of);
   const proof::SolidDesign design(*job.proof.mesh, job.proof.chord_mm);
   measure::SurfaceMetrics& surface = main.surface;
   tell_distances(design, surface);
+  const BodyQuestion question{job, cutters, design, slack, progress, result};
+  drop_seams(question);
   progress.begin("prove", 2.0, "sides");
-  proof::GougeBound gouges =
-      proof::bound_gouges({design, main.rays.sweeps, cutters, asked_mm(gouge_um, slack.gouge_mm),
-                           surface.gouge_max_um * kMicrometre, progress});
-  gouges.bound_mm = std::max(gouges.bound_mm, out_of_stock(*job.proof.mesh, raw));
+  bool is_finished = prove_gouges(question);
   progress.advance(1.0);
-  std::optional<proof::SolidDesign> coarser;
-  if (job.proof_outside.mesh != job.proof.mesh)
-    coarser.emplace(*job.proof_outside.mesh, job.proof_outside.chord_mm);
-  const proof::SolidDesign& outside = coarser ? *coarser : design;
-  const auto left_over = [&](const proof::SolidDesign& facets, double slack_mm) {
-    return proof::bound_leftover({facets, main.rays.sweeps, cutters, *result.stock, result.sweep_bound_mm,
-                                  asked_mm(excess_um, slack_mm), surface.excess_max_um * kMicrometre,
-                                  progress, 1.0});
-  };
-  double leftover_slack = slack.leftover_mm;
-  proof::LeftoverBound leftover = left_over(outside, leftover_slack);
-  // Between the limit and the limit less the wider slack the finer facets decide.
-  if (coarser && um_from_mm(leftover.bound_mm + leftover_slack) > excess_um &&
-      um_from_mm(leftover.found_mm - leftover_slack) <= excess_um) {
-    leftover_slack = slack.gouge_mm;
-    leftover = left_over(design, leftover_slack);
-  }
+  is_finished = is_finished && prove_leftover(question);
   progress.end();
-  if (progress.stop_requested()) return true;
-  if (coarser && leftover.found_mm > 0.0) {
-    const mesh::SignedPoint seen = design.distance().at(leftover.top);
-    leftover.found_mm = seen.distance_mm;
-    leftover.foot = seen.foot;
-  }
-  take_gouges(gouges, slack.gouge_mm, gouge_um, surface);
-  take_leftover(leftover, leftover_slack, excess_um, surface);
-  surface.gouge_regions = keep_worst(surface.gouges);
-  surface.excess_regions = keep_worst(surface.excesses);
+  if (!is_finished) return true;
   if (accept.scallop_max_um && surface.excess_bound->um <= *accept.scallop_max_um)
     surface.scallop_bound = surface.excess_bound;
   return is_decided(surface.gouge_max_um, surface.gouge_bound, accept.gouge_max_um) &&
@@ -375,12 +444,27 @@ void prove_design(const Job& job, Ranks* ranks, Progress& progress, Result& resu
   progress.end();
 }
 
+/// Without a limit of its own the excess of a body fails above kExcessAllowed: by material alone.
+void look_at_excess(const Job& job, Progress& progress, Result& result) {
+  if (job.proof.mesh == nullptr || !(result.main.surface.excess_max_um > kExcessAllowed)) return;
+  const RayCutters rays = ray_cutters(job, result.main);
+  const measure::SweepCutters cutters(rays.solids, rays.solid_of);
+  const proof::SolidDesign design(*job.proof.mesh, job.proof.chord_mm);
+  drop_seams({job, cutters, design, {0.0, 0.0}, progress, result});
+}
+
 }  // namespace
 
-void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result) {
+void prove_part(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
   MeasuredPath& main = result.main;
   if (main.dexels.empty()) return;
-  if (wants_proof(job)) prove_design(job, ranks, progress, result);
+  constexpr double kShareBeforePictures = 0.6;
+  BudgetProgress limited(progress, options.budget, options.outputs.pictures ? kShareBeforePictures : 1.0);
+  if (wants_proof(job))
+    prove_design(job, options.ranks, limited, result);
+  else
+    look_at_excess(job, progress, result);
+  // Without it a part that the stock cannot hold would pass; it takes little time.
   if (!progress.stop_requested()) prove_raw(job, progress, result);
 }
 

@@ -12,6 +12,7 @@
 
 namespace swarf::sim {
 
+struct CutOptions;
 struct MeasuredPath;
 struct Result;
 
@@ -45,7 +46,8 @@ bool wants_proof(const Job& job);
 
 /// After rays and level set have measured the part: fills result.main.surface with the proven bounds of gouge
 /// and excess, with every place that breaks a limit, and with what was found deeper or higher than on the
-/// rays. `ranks`: that have cut their rays and share the proof; null: none do.
-void prove_part(const Job& job, Ranks* ranks, Progress& progress, Result& result);
+/// rays. The ranks of the options, if any, have cut their rays and share the proof. The budget of the options
+/// ends it: what is not proven then has no bound.
+void prove_part(const Job& job, const CutOptions& options, Progress& progress, Result& result);
 
 }  // namespace swarf::sim

@@ -44,6 +44,14 @@ TEST(MeshCheck, ASoundDesignHasNoFaults) {
   EXPECT_EQ(codes(box(100, 80, 40), nullptr, nullptr), "");
 }
 
+TEST(MeshCheck, ASheetOfZeroThicknessEnclosesNoVolume) {
+  TriMesh sheet;
+  sheet.positions = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  EXPECT_EQ(codes(sheet), "mesh-no-volume");
+  EXPECT_EQ(codes(box(100, 80, 0.001F)), "");
+}
+
 TEST(MeshCheck, OpenSaysHowManyEdgesAndWhere) {
   TriMesh mesh = box(100, 80, 40);
   mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4);  // the top

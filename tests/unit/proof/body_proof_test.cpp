@@ -93,9 +93,43 @@ TEST(BodyProof, AThinWallBetweenTwoRowsIsFound) {
   EXPECT_EQ(prove(closer, CutterSolid(2.45, 20.0), 2.0, 10.0).leftover.open, 0U);
 }
 
+TEST(BodyProof, RowsThatMeetEdgeToEdgeLeaveNothing) {
+  const swarf::proof::SolidDesign design(slotted_block(), 0.0);
+  const CutterSolid cutter(2.5, 20.0);
+  const swarf::measure::SweepCutters cutters(cutter);
+  Progress silent;
+  for (const double apart : {0.0, 1e-13, 0.005}) {
+    const std::vector<Sweep> rows{along_x(-2.5, -4, 0), along_x(2.5 + apart, -4, 1)};
+    Stock stock(Box{Vec3(-20, -15, -10), Vec3(20, 15, 0)}, 0.4);
+    stock.cut(rows, cutter);
+    // A ray on the seam has met 4 mm of material.
+    const std::vector<Vec3> tops{Vec3(0, 0.5 * apart, 0)};
+    const auto stand =
+        swarf::proof::which_stand({design, rows, cutters, stock, 0.0, 0.010, 0.0, silent}, tops);
+    EXPECT_EQ(stand, std::vector<uint8_t>{apart > 1e-3}) << apart;
+  }
+}
+
 TEST(BodyProof, MaterialFarAboveTheDesignIsFound) {
   const Proven proven = prove({along_x(0, -4, 0)}, CutterSolid(5.0, 20.0), 2.0, 10.0, 5.0);
   EXPECT_NEAR(proven.leftover.found_mm, 5.0, 1e-3);
+}
+
+TEST(BodyProof, ALeftoverProofThatIsCutShortProvesNoLessThanWhatStands) {
+  const swarf::proof::SolidDesign design(slotted_block(), 0.0);
+  const CutterSolid cutter(5.0, 20.0);
+  const std::vector<Sweep> sweeps{along_x(0, -4, 0)};
+  const swarf::measure::SweepCutters cutters(cutter);
+  Progress silent;
+  for (const double top : {0.0, 5.0}) {
+    Stock stock(Box{Vec3(-20, -15, -10), Vec3(20, 15, top)}, 0.4);
+    stock.cut(sweeps, cutter);
+    swarf::proof::LeftoverQuestion question{design, sweeps, cutters, stock, 0.0, 0.010, 0.0, silent};
+    question.most_parts = 0;
+    const auto short_of_work = swarf::proof::bound_leftover(question);
+    EXPECT_GT(short_of_work.open, 0U);
+    EXPECT_GE(short_of_work.bound_mm, std::max(top, 0.010 + 1e-9)) << "or it would pass";
+  }
 }
 
 TEST(BodyProof, ABuriedToolIsAGouge) {
