@@ -233,18 +233,9 @@ class TileCut {
     bool changed = false;
     for (uint32_t n = 0; n < tile_.count; ++n) {
       const double limit = above ? w_.tops[n] : w_.standing.heights[n];
-      if (w_.found.bound[n] <= limit + kBoundSlack && !passes_by(n, sweep, limit))
-        changed |= cut_ray(n, sweep, limit);
+      if (w_.found.bound[n] <= limit + kBoundSlack) changed |= cut_ray(n, sweep, limit);
     }
     return changed;
-  }
-
-  /// No cut counts that ends below the skin or begins above `limit`.
-  bool passes_by(uint32_t n, size_t sweep, double limit) const {
-    if (w_.found.exact[n] != kNoHeight || !std::isfinite(limit)) return false;
-    const Vec3 &point = material_.field.points[w_.index[n]], &normal = material_.field.normals[w_.index[n]];
-    return sweep_passes_by(chain_.maps[sweep], point + std::min(limit, -kSkin) * normal,
-                           point + limit * normal, chain_.cutter);
   }
 
   /// `limit`: no material of this ray above it can be met.

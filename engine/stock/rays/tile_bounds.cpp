@@ -1,7 +1,6 @@
 #include "stock/rays/tile_bounds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "stock/sweep/convex_motion.h"
@@ -81,41 +80,6 @@ bool plane_above(const RayTile& tile, const SweepMap& map, double highest) {
 bool beyond_top(const RayTile& tile, const SweepMap& map, const Extent& extent, double cutter_height) {
   return std::min(lowest_z(tile, map.R0t.row(2).transpose(), map.tip0, extent),
                   lowest_z(tile, map.R1t.row(2).transpose(), map.tip1, extent)) > cutter_height + kBoundSlack;
-}
-
-namespace {
-
-double cross2(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-double origin_distance2(const Vec2& a, const Vec2& b) {
-  const Vec2 way = b - a;
-  const double length2 = way.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp(-a.dot(way) / length2, 0.0, 1.0) : 0.0;
-  return (a + t * way).squaredNorm();
-}
-
-}  // namespace
-
-bool sweep_passes_by(const SweepMap& map, const Vec3& low, const Vec3& high, const CutterSolid& cutter) {
-  if (map.R0t != map.R1t) return false;
-  // In the tool's frame the part of the ray sweeps a parallelogram; the cutter stands in a cylinder.
-  const Vec3 a = map.start(low), b = map.start(high), c = map.end(high), d = map.end(low);
-  if (std::min({a.z(), b.z(), c.z(), d.z()}) > cutter.height + kBoundSlack ||
-      std::max({a.z(), b.z(), c.z(), d.z()}) < -kBoundSlack)
-    return true;
-  const std::array<Vec2, 4> corners{a.head<2>(), b.head<2>(), c.head<2>(), d.head<2>()};
-  const double reach = cutter.radius + kBoundSlack;
-  int left = 0, right = 0;
-  for (size_t k = 0; k < 4; ++k) {
-    const Vec2 &from = corners[k], &to = corners[(k + 1) % 4];
-    if (origin_distance2(from, to) <= reach * reach) return false;
-    const double side = cross2(from, to);
-    left += side > 0.0 ? 1 : 0;
-    right += side < 0.0 ? 1 : 0;
-  }
-  return left < 4 && right < 4;  // else the axis passes through the parallelogram
 }
 
 }  // namespace swarf::stock

@@ -80,9 +80,4 @@ bool pieces_above(const RayTile& tile, const SweepMap& map, const CutterSolid& c
 /// All points of the tile's rays in the extent lie beyond the cutter's top, at both ends of the sweep.
 bool beyond_top(const RayTile& tile, const SweepMap& map, const Extent& extent, double cutter_height);
 
-/// Of a sweep without rotation: the cutter passes no point between `low` and `high` of a ray. A face that
-/// runs along the tool's axis has no bound by the bottom plane, and most sweeps around it pass far from each
-/// ray.
-bool sweep_passes_by(const SweepMap& map, const Vec3& low, const Vec3& high, const CutterSolid& cutter);
-
 }  // namespace swarf::stock
