@@ -187,8 +187,8 @@ std::string part_glb(const FinishedRun& run, const ReviewModels& models, const G
                   {"deviation_scale_below_um", scale.below_um},
                   {"deviation_scale_above_um", scale.above_um},
                   {"path_error_mm", models.way.error_mm},
-                  {"decimation_error_um", um_from_mm(models.part.error_mm)},
-                  {"colours_off_share", models.part.colours_off}};
+                  {"decimation_error_um", um_from_mm(models.part.error_mm)}};
+  if (!std::isnan(models.part.colours_off)) scene.extras["colours_off_share"] = models.part.colours_off;
   return render::glb_bytes(scene, options.encoding);
 }
 

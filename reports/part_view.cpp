@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/units.h"
@@ -29,17 +30,30 @@ TriMesh part_mesh(const FinishedRun& run) {
 
 namespace {
 
-/// Decimation leaves folds in flat places: triangles that face against the normals of their corners and lie
-/// upside down on others. They are turned over, to be shaded and measured as what they lie on.
-void turn_folds(TriMesh& mesh) {
+/// Triangles that face against the normals of their corners. Decimation leaves such folds in flat places:
+/// they lie upside down on others.
+std::vector<uint32_t> folds(const TriMesh& mesh) {
   constexpr double kAgainst = -0.3;  // of a sum of three: corners on an edge have normals of both sides
   const auto vec = [](const std::array<float, 3>& a) { return Vec3(a[0], a[1], a[2]); };
-  for (auto& t : mesh.triangles) {
+  std::vector<uint32_t> found;
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
     const Vec3 a = vec(mesh.positions[t[0]]);
     const Vec3 facing = (vec(mesh.positions[t[1]]) - a).cross(vec(mesh.positions[t[2]]) - a);
     const Vec3 sum = vec(mesh.normals[t[0]]) + vec(mesh.normals[t[1]]) + vec(mesh.normals[t[2]]);
-    if (facing.dot(sum) < kAgainst * facing.norm()) std::swap(t[1], t[2]);
+    if (facing.dot(sum) < kAgainst * facing.norm()) found.push_back(i);
   }
+  return found;
+}
+
+/// Of their corners, each once.
+void turn_normals(TriMesh& mesh, const std::vector<uint32_t>& triangles) {
+  std::vector<uint8_t> turned(mesh.positions.size(), 0);
+  for (const uint32_t triangle : triangles)
+    for (const uint32_t v : mesh.triangles[triangle]) {
+      if (std::exchange(turned[v], 1) != 0) continue;
+      for (float& n : mesh.normals[v]) n = -n;
+    }
 }
 
 /// Where rays end whose neighbours have found another deviation.
@@ -65,11 +79,11 @@ std::vector<Vec3> changes_between_rays(const std::vector<stock::SurfaceDexels>& 
   return some;
 }
 
-}  // namespace
-
-TriMesh shown_part(const FinishedRun& run, TriMesh closed, size_t most_vertices, double* colours_off) {
-  turn_folds(closed);
+/// The part whose design are facets or CAD faces. Folds are measured as what they lie on.
+TriMesh divided_part(const FinishedRun& run, TriMesh closed, size_t most_vertices, double* colours_off) {
+  const std::vector<uint32_t> folded = folds(closed);
   mesh::split_creases(closed, kCreaseRad);
+  turn_normals(closed, folded);
   const sim::MeshMeasure measure(measured_part(run));
   const render::DeviationScale scale = deviation_scale(run.job, run.dexels);
   const render::ColourError error(scale);
@@ -83,10 +97,22 @@ TriMesh shown_part(const FinishedRun& run, TriMesh closed, size_t most_vertices,
   if (field.most_vertices > 0)
     field.known_changes = changes_between_rays(run.dexels, scale, error.allowed_um(), field.near_mm);
   mesh::show_field(field, closed);
-  if (colours_off == nullptr) return closed;
-  constexpr size_t kPlaces = 2000;
-  const mesh::ShownAgreement found = mesh::shown_agreement(field, closed, kPlaces);
-  *colours_off = found.seen == 0 ? 0.0 : static_cast<double>(found.wrong) / static_cast<double>(found.seen);
+  if (colours_off != nullptr) {
+    constexpr size_t kPlaces = 2000;
+    const mesh::ShownAgreement found = mesh::shown_agreement(field, closed, kPlaces);
+    *colours_off = static_cast<double>(found.wrong) / static_cast<double>(std::max<size_t>(found.seen, 1));
+  }
+  turn_normals(closed, folds(closed));
+  return closed;
+}
+
+}  // namespace
+
+TriMesh shown_part(const FinishedRun& run, TriMesh closed, size_t most_vertices, double* colours_off) {
+  if (run.job.design_mesh != nullptr) return divided_part(run, std::move(closed), most_vertices, colours_off);
+  mesh::split_creases(closed, kCreaseRad);
+  sim::measure_mesh(measured_part(run), closed);
+  if (colours_off != nullptr) *colours_off = std::numeric_limits<double>::quiet_NaN();
   return closed;
 }
 
@@ -125,6 +151,10 @@ double rounded_up(double um) {
 
 render::DeviationScale deviation_scale(const sim::Job& job, const std::vector<stock::SurfaceDexels>& dexels) {
   const sim::AcceptLimits& accept = job.scene.accept;
+  if (job.design_mesh == nullptr) {
+    const double above = std::max(accept.scallop_max_um.value_or(0.0), accept.excess_max_um.value_or(0.0));
+    return {accept.gouge_band_um(), above > 0.0 ? above : accept.scallop_band_um()};
+  }
   const double limit = std::max({accept.scallop_max_um.value_or(0.0), accept.excess_max_um.value_or(0.0),
                                  accept.gouge_max_um.value_or(0.0)});
   if (limit > 0.0) return limit;

@@ -61,32 +61,40 @@ class DesignPlaces {
     return best;
   }
 
-  /// The distance from the design, outside of it > 0, mm. Where the nearest place lies on an edge or at a
-  /// corner, the sum of the normals that meet there decides on which side the point is: one of them alone
-  /// says nothing of a point in its own plane.
+  /// The distance from the design, outside of it > 0, mm.
   double signed_distance(const Vec3& p) const {
     const stock::DesignMesh::Place near = design_.nearest(p);
-    const DesignPlace best = seen_at(near, p);
-    const double height = best.height_of(p);
+    const double height = seen_at(near, p).height_of(p);
     if (std::abs(height) >= kStraightOver * near.distance_mm) return std::copysign(near.distance_mm, height);
-    const double beside = kSameFoot + (design_.under != nullptr ? design_.under->edge_mm : 0.0);
+    return distance_from_edge(near, height, p);
+  }
+
+ private:
+  /// Where the nearest place lies on an edge or at a corner, the sum of the normals that meet there decides
+  /// on which side the point is: one of them alone says nothing of a point in its own plane. Nearer to the
+  /// edge of CAD faces than it strays, the point is as high as over the face whose plane is nearest.
+  double distance_from_edge(const stock::DesignMesh::Place& near, double height, const Vec3& p) const {
+    const double stray = design_.under != nullptr ? design_.under->edge_mm : 0.0, beside = kSameFoot + stray;
     std::vector<Vec3> normals;
     Vec3 sum = Vec3::Zero();
+    double least = height;
     design_.distance.each_near(p, near.distance_mm + beside, [&](uint32_t triangle) {
       const DesignPlace place = seen_at(design_.nearest_on(triangle, p), p);
       if (!(place.distance_mm <= near.distance_mm + beside) ||
           (place.point - near.point).norm() > kSameFoot + 2.0 * beside)
         return;
-      const bool known = std::any_of(normals.begin(), normals.end(),
-                                     [&](const Vec3& one) { return one.dot(place.normal) > kSameNormal; });
-      if (known) return;
+      const double over = place.height_of(p);
+      if (std::abs(over) < std::abs(least)) least = over;
+      if (std::any_of(normals.begin(), normals.end(),
+                      [&](const Vec3& one) { return one.dot(place.normal) > kSameNormal; }))
+        return;
       normals.push_back(place.normal);
       sum += place.normal;
     });
+    if (near.distance_mm <= stray) return least;
     return std::copysign(near.distance_mm, normals.empty() ? height : (p - near.point).dot(sum));
   }
 
- private:
   static constexpr uint32_t kNone = 0xffffffffU;
 
   /// Of a facet without area none: infinitely far away.
