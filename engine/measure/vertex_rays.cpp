@@ -72,27 +72,34 @@ class DesignPlaces {
  private:
   /// Where the nearest place lies on an edge or at a corner, the sum of the normals that meet there decides
   /// on which side the point is: one of them alone says nothing of a point in its own plane. Nearer to the
-  /// edge of CAD faces than it strays, the point is as high as over the face whose plane is nearest.
+  /// edge of CAD faces than its facets stray, a point that is over one face and under another is as high as
+  /// over that whose plane is nearer.
   double distance_from_edge(const stock::DesignMesh::Place& near, double height, const Vec3& p) const {
-    const double stray = design_.under != nullptr ? design_.under->edge_mm : 0.0, beside = kSameFoot + stray;
+    const double stray = edge_stray(near.triangle), beside = kSameFoot + stray;
     std::vector<Vec3> normals;
     Vec3 sum = Vec3::Zero();
-    double least = height;
+    double low = height, high = height;
     design_.distance.each_near(p, near.distance_mm + beside, [&](uint32_t triangle) {
       const DesignPlace place = seen_at(design_.nearest_on(triangle, p), p);
       if (!(place.distance_mm <= near.distance_mm + beside) ||
           (place.point - near.point).norm() > kSameFoot + 2.0 * beside)
         return;
-      const double over = place.height_of(p);
-      if (std::abs(over) < std::abs(least)) least = over;
+      low = std::min(low, place.height_of(p));
+      high = std::max(high, place.height_of(p));
       if (std::any_of(normals.begin(), normals.end(),
                       [&](const Vec3& one) { return one.dot(place.normal) > kSameNormal; }))
         return;
       normals.push_back(place.normal);
       sum += place.normal;
     });
-    if (near.distance_mm <= stray) return least;
+    if (near.distance_mm <= stray && low <= 0.0 && high >= 0.0) return -low < high ? low : high;
     return std::copysign(near.distance_mm, normals.empty() ? height : (p - near.point).dot(sum));
+  }
+
+  /// How far the edge of a facet is from that of its face at most, mm.
+  double edge_stray(uint32_t triangle) const {
+    if (design_.under == nullptr) return 0.0;
+    return design_.under->is_curved(triangle) ? design_.under->chord_mm : design_.under->edge_mm;
   }
 
   static constexpr uint32_t kNone = 0xffffffffU;
