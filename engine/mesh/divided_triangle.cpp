@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/mixed_corners.h"
+
 namespace swarf::mesh {
 namespace {
 
@@ -14,11 +16,6 @@ struct OutlinePlace {
   unsigned sides;
 };
 
-Vec3 corner_point(const TriMesh& mesh, uint32_t vertex) {
-  const auto& p = mesh.positions[vertex];
-  return {p[0], p[1], p[2]};
-}
-
 /// Of a diagonal; the lesser is better: unlike values first, then long ways.
 std::pair<double, double> diagonal_cost(const TriMesh& mesh, double saturates, uint32_t a, uint32_t b) {
   constexpr double kSameUm = 0.05;
@@ -27,7 +24,7 @@ std::pair<double, double> diagonal_cost(const TriMesh& mesh, double saturates, u
   };
   const double apart = std::abs(shown(a) - shown(b));
   const double steps = std::isnan(apart) ? 0.0 : std::floor(apart / kSameUm);
-  return {steps, (corner_point(mesh, a) - corner_point(mesh, b)).norm()};
+  return {steps, (vec3_of(mesh.positions[a]) - vec3_of(mesh.positions[b])).norm()};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "mesh/mixed_corners.h"
 #include "mesh/shown_field.h"
 
 namespace swarf::mesh {
@@ -16,28 +17,12 @@ struct RandomPlace {
   Vec3 shares;
 };
 
-Vec3 corner_of(const std::vector<std::array<float, 3>>& values, uint32_t vertex) {
-  const auto& v = values[vertex];
-  return {v[0], v[1], v[2]};
-}
-
-Vec3 mixed(const std::vector<std::array<float, 3>>& values, const std::array<uint32_t, 3>& corners,
-           const Vec3& shares) {
-  Vec3 sum = Vec3::Zero();
-  for (size_t k = 0; k < 3; ++k) sum += shares[static_cast<int>(k)] * corner_of(values, corners[k]);
-  return sum;
-}
-
-std::array<float, 3> three_floats(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 std::vector<RandomPlace> random_places(const TriMesh& mesh, size_t count) {
   std::vector<double> sums;
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {
-    const Vec3 a = corner_of(mesh.positions, t[0]);
-    const Vec3 cross = (corner_of(mesh.positions, t[1]) - a).cross(corner_of(mesh.positions, t[2]) - a);
+    const Vec3 a = vec3_of(mesh.positions[t[0]]);
+    const Vec3 cross = (vec3_of(mesh.positions[t[1]]) - a).cross(vec3_of(mesh.positions[t[2]]) - a);
     sums.push_back(sum += 0.5 * cross.norm());
   }
   Rng rng(kSeed);
@@ -64,8 +49,8 @@ ShownAgreement shown_agreement(const ShownField& field, const TriMesh& mesh, siz
   TriMesh probes;
   for (const RandomPlace& place : places) {
     const auto& corners = mesh.triangles[place.triangle];
-    probes.positions.push_back(three_floats(mixed(mesh.positions, corners, place.shares)));
-    probes.normals.push_back(three_floats(mixed(mesh.normals, corners, place.shares).normalized()));
+    probes.positions.push_back(floats_of(mixed_corners(mesh.positions, corners, place.shares)));
+    probes.normals.push_back(floats_of(mixed_corners(mesh.normals, corners, place.shares).normalized()));
   }
   field.measure(probes);
   for (size_t n = 0; n < places.size(); ++n) {
@@ -83,7 +68,7 @@ ShownAgreement shown_agreement(const ShownField& field, const TriMesh& mesh, siz
     if (error > 1.0) ++found.wrong;
     if (error <= found.worst) continue;
     found.worst = error;
-    found.where = corner_of(probes.positions, static_cast<uint32_t>(n));
+    found.where = vec3_of(probes.positions[n]);
   }
   return found;
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -14,6 +13,8 @@
 #include "base/check.h"
 #include "mesh/divided_triangle.h"
 #include "mesh/field_line.h"
+#include "mesh/mixed_corners.h"
+#include "mesh/patch_borders.h"
 #include "mesh/vertices_at.h"
 
 namespace swarf::mesh {
@@ -38,18 +39,6 @@ constexpr double kGoodEnough = 0.7;
 using FieldTriangle = std::array<uint32_t, 3>;
 using MeshSide = std::pair<uint32_t, uint32_t>;  ///< of two vertices, the lesser first
 
-uint64_t side_key(uint32_t a, uint32_t b) {
-  return uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
-Vec3 field_point(const std::array<float, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-std::array<float, 3> field_floats(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 /// A place of the mesh whose field is asked for.
 struct FieldProbe {
   uint32_t owner;  ///< index of a side, or of a triangle
@@ -63,8 +52,7 @@ class FieldOnMesh {
   void show() {
     if (field_.most_vertices > mesh_.positions.size())
       add_vertices_at(field_.known_changes, field_.near_mm, mesh_);
-    weld();
-    find_insets();
+    borders_ = patch_borders(mesh_, kInsetMm);
     measure_vertices(0);
     active_.resize(mesh_.triangles.size());
     for (uint32_t t = 0; t < active_.size(); ++t) active_[t] = t;
@@ -97,63 +85,11 @@ class FieldOnMesh {
     std::vector<double> at;
   };
 
-  Vec3 position(uint32_t v) const { return field_point(mesh_.positions[v]); }
-  Vec3 inner(uint32_t v) const { return position(v) + inset_[v]; }
-
-  /// Copies of a vertex beside a crease are one: the first of them.
-  void weld() {
-    std::vector<uint32_t> order(mesh_.positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-      return std::pair(mesh_.positions[a], a) < std::pair(mesh_.positions[b], b);
-    });
-    welded_.resize(order.size());
-    on_crease_.assign(order.size(), 0);
-    for (size_t i = 0, first = 0; i < order.size(); ++i) {
-      const bool copy = i > 0 && mesh_.positions[order[i]] == mesh_.positions[order[first]];
-      if (!copy) first = i;
-      welded_[order[i]] = order[first];
-      if (copy) on_crease_[order[i]] = on_crease_[order[first]] = 1;
-    }
-  }
+  Vec3 position(uint32_t v) const { return vec3_of(mesh_.positions[v]); }
+  Vec3 inner(uint32_t v) const { return position(v) + borders_.inset[v]; }
 
   Vec3 cross_of(const FieldTriangle& t) const {
     return (position(t[1]) - position(t[0])).cross(position(t[2]) - position(t[0]));
-  }
-
-  /// Of all triangles: a side within a patch stands there twice.
-  std::vector<uint64_t> sorted_sides() const {
-    std::vector<uint64_t> sides;
-    sides.reserve(3 * mesh_.triangles.size());
-    for (const FieldTriangle& t : mesh_.triangles)
-      for (size_t k = 0; k < 3; ++k) sides.push_back(side_key(t[k], t[(k + 1) % 3]));
-    std::sort(sides.begin(), sides.end());
-    return sides;
-  }
-
-  /// Perpendicular to the sides that are the border of a patch there, within the patch.
-  void find_insets() {
-    const std::vector<uint64_t> sides = sorted_sides();
-    const auto on_border = [&](uint64_t key) {
-      const auto found = std::lower_bound(sides.begin(), sides.end(), key);
-      return found + 1 == sides.end() || *(found + 1) != key;
-    };
-    std::vector<std::array<Vec3, 2>> inward(mesh_.positions.size(), {Vec3::Zero(), Vec3::Zero()});
-    for (const FieldTriangle& t : mesh_.triangles) {
-      const Vec3 normal = cross_of(t).normalized();
-      for (size_t k = 0; k < 3; ++k) {
-        const uint32_t a = t[k], b = t[(k + 1) % 3];
-        if (!on_border(side_key(a, b))) continue;
-        const Vec3 in = normal.cross(position(b) - position(a)).normalized();
-        for (const uint32_t v : {a, b}) (inward[v][0].isZero() ? inward[v][0] : inward[v][1]) = in;
-      }
-    }
-    inset_.resize(mesh_.positions.size());
-    constexpr double kNarrow = 0.2;  // in a sharper corner the places are farther inside than from its sides
-    for (size_t v = 0; v < inset_.size(); ++v) {
-      const auto& [m, n] = inward[v];
-      inset_[v] = kInsetMm * (m + n) / (n.isZero() ? 1.0 : std::max(1.0 + m.dot(n), kNarrow));
-    }
   }
 
   /// Sets the values of the vertices from `first` on.
@@ -165,14 +101,14 @@ class FieldOnMesh {
     for (int attempt = 0; attempt < kTriesInside && !open.empty(); ++attempt, farther *= kFartherInside) {
       TriMesh places;
       for (const uint32_t v : open) {
-        places.positions.push_back(field_floats(position(v) + farther * inset_[v]));
+        places.positions.push_back(floats_of(position(v) + farther * borders_.inset[v]));
         places.normals.push_back(mesh_.normals[v]);
       }
       field_.measure(places);
       std::vector<uint32_t> still;
       for (size_t i = 0; i < open.size(); ++i) {
         const float um = places.deviation_um[i];
-        if (std::isnan(um) && !inset_[open[i]].isZero()) still.push_back(open[i]);
+        if (std::isnan(um) && !borders_.inset[open[i]].isZero()) still.push_back(open[i]);
         if (std::isnan(um)) continue;
         mesh_.deviation_um[open[i]] = um;
         mesh_.normals[open[i]] = places.normals[i];
@@ -181,27 +117,33 @@ class FieldOnMesh {
     }
   }
 
-  /// Measures what has not been looked at of the active triangles.
-  void look() {
+  /// Lists the active triangles, and of their sides those that have not been looked at.
+  void list_looks() {
     sides_.clear();
     inside_.clear();
-    TriMesh places;
-    std::vector<FieldProbe> probes;
     std::unordered_map<uint64_t, uint32_t> side_of;
     for (const uint32_t t : active_) {
       const FieldTriangle& triangle = mesh_.triangles[t];
       const double area = 0.5 * cross_of(triangle).norm();
-      for (size_t k = 0; k < 3; ++k) {
-        const uint32_t a = std::min(triangle[k], triangle[(k + 1) % 3]),
-                       b = std::max(triangle[k], triangle[(k + 1) % 3]);
-        if (!looked_.insert(side_key(a, b)).second && side_of.count(side_key(a, b)) == 0) continue;
-        const auto [place, is_new] =
-            side_of.try_emplace(side_key(a, b), static_cast<uint32_t>(sides_.size()));
-        if (is_new) sides_.push_back({{a, b}, {}, 0.0});
-        sides_[place->second].area_mm2 += area;
-      }
       inside_.push_back({t, 0.0, area});
+      for (size_t k = 0; k < 3; ++k) {
+        const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+        const bool is_new = looked_.insert(side_key(a, b)).second;
+        if (is_new) {
+          side_of[side_key(a, b)] = static_cast<uint32_t>(sides_.size());
+          sides_.push_back({{a, b}, {}, 0.0});
+        }
+        const auto found = side_of.find(side_key(a, b));
+        if (found != side_of.end()) sides_[found->second].area_mm2 += area;
+      }
     }
+  }
+
+  /// Measures what is listed.
+  void look() {
+    list_looks();
+    TriMesh places;
+    std::vector<FieldProbe> probes;
     for (uint32_t i = 0; i < sides_.size(); ++i) ask_side(i, probes, places);
     const size_t of_sides = probes.size();
     for (uint32_t i = 0; i < inside_.size(); ++i) ask_inside(i, probes, places);
@@ -211,8 +153,8 @@ class FieldOnMesh {
       sides_[probes[n].owner].line.add(probes[n].shares.x(), places.deviation_um[n]);
     for (size_t n = of_sides; n < probes.size(); ++n) {
       TriangleLook& one = inside_[probes[n].owner];
-      one.worst = std::max(
-          one.worst, error_inside(mesh_.triangles[one.triangle], probes[n].shares, places.deviation_um[n]));
+      const FieldTriangle& triangle = mesh_.triangles[one.triangle];
+      one.worst = std::max(one.worst, error_inside(triangle, probes[n].shares, places.deviation_um[n]));
     }
   }
 
@@ -222,18 +164,18 @@ class FieldOnMesh {
     for (size_t k = 0; k < 3; ++k) {
       const double share = shares[static_cast<int>(k)];
       point += share * inner(of[k]);
-      normal += share * field_point(mesh_.normals[of[k]]);
+      normal += share * vec3_of(mesh_.normals[of[k]]);
     }
     probes.push_back({owner, shares});
-    places.positions.push_back(field_floats(point));
-    places.normals.push_back(field_floats(normal.normalized()));
+    places.positions.push_back(floats_of(point));
+    places.normals.push_back(floats_of(normal.normalized()));
   }
 
   void ask_side(uint32_t i, std::vector<FieldProbe>& probes, TriMesh& places) const {
     const auto [a, b] = sides_[i].side;
     const double length = (position(b) - position(a)).norm();
     if (length < kSideLookedAt || (length < kSmallSide && is_same(a, b))) return;
-    for (const double t : places_on_side(length, on_crease_[a] != 0, on_crease_[b] != 0)) {
+    for (const double t : places_on_side(length, borders_.on_crease[a] != 0, borders_.on_crease[b] != 0)) {
       ask(i, {1.0 - t, t, 0.0}, {a, b, b}, probes, places);
       probes.back().shares.x() = t;
     }
@@ -271,9 +213,7 @@ class FieldOnMesh {
   double error_inside(const FieldTriangle& t, const Vec3& shares, float truth) const {
     const std::array<float, 3> um{mesh_.deviation_um[t[0]], mesh_.deviation_um[t[1]],
                                   mesh_.deviation_um[t[2]]};
-    if (std::isnan(truth)) return 0.0;
-    if (std::isnan(um[0] + um[1] + um[2])) return 0.0;
-    return field_.error(um, shares, truth);
+    return std::isnan(truth + um[0] + um[1] + um[2]) ? 0.0 : field_.error(um, shares, truth);
   }
 
   std::pair<size_t, double> longest_side(const FieldTriangle& t) const {
@@ -286,41 +226,53 @@ class FieldOnMesh {
   }
 
   void add_cut(uint32_t a, uint32_t b, const std::vector<double>& at, double gain) {
-    const bool turned = welded_[a] > welded_[b];
-    Cut& cut = found_[side_key(welded_[a], welded_[b])];
-    cut.key = side_key(welded_[a], welded_[b]);
+    const bool turned = borders_.welded[a] > borders_.welded[b];
+    Cut& cut = found_[side_key(borders_.welded[a], borders_.welded[b])];
+    cut.key = side_key(borders_.welded[a], borders_.welded[b]);
     cut.gain += gain;
     for (const double t : at) cut.at.push_back(turned ? 1.0 - t : t);
+  }
+
+  /// Sides are divided at the knots of what is known along them.
+  void cut_sides() {
+    const auto between = [&](float low, float high, double t, float truth) {
+      return field_.error({low, high, high}, {1.0 - t, t, 0.0}, truth);
+    };
+    for (const SideLook& look : sides_) {
+      const auto [a, b] = look.side;
+      const float low = mesh_.deviation_um[a], high = mesh_.deviation_um[b];
+      if (std::isnan(low + high)) continue;
+      const double apart = kShortest / std::max((position(b) - position(a)).norm(), kShortest);
+      const FieldLine::Knots knots =
+          look.line.knots(low, high, field_.saturates, apart, kGoodEnough, between);
+      if (!knots.at.empty()) add_cut(a, b, knots.at, knots.worst * look.area_mm2);
+    }
+  }
+
+  /// Triangles that err inside and whose own sides are right are halved.
+  void cut_inside() {
+    std::vector<const TriangleLook*> wrong;
+    for (const TriangleLook& look : inside_)
+      if (look.worst > kGoodEnough && !has_cut(mesh_.triangles[look.triangle])) wrong.push_back(&look);
+    for (const TriangleLook* look : wrong) {
+      const FieldTriangle& t = mesh_.triangles[look->triangle];
+      const auto [k, length] = longest_side(t);
+      if (length > 2.0 * kShortest) add_cut(t[k], t[(k + 1) % 3], {0.5}, look->worst * look->area_mm2);
+    }
+  }
+
+  bool has_cut(const FieldTriangle& t) const {
+    const auto is_cut = [&](uint32_t a, uint32_t b) {
+      return found_.count(side_key(borders_.welded[a], borders_.welded[b])) > 0;
+    };
+    return is_cut(t[0], t[1]) || is_cut(t[1], t[2]) || is_cut(t[2], t[0]);
   }
 
   /// The sides to divide, those that mend most as far as there is room for vertices.
   void choose() {
     found_.clear();
-    std::unordered_set<uint64_t> divided;
-    for (SideLook& look : sides_) {
-      const auto [a, b] = look.side;
-      if (std::isnan(mesh_.deviation_um[a] + mesh_.deviation_um[b])) continue;
-      const double length = (position(b) - position(a)).norm();
-      const FieldLine::Knots knots =
-          look.line.knots(mesh_.deviation_um[a], mesh_.deviation_um[b], field_.saturates,
-                          kShortest / std::max(length, kShortest), kGoodEnough,
-                          [&](float low, float high, double t, float truth) {
-                            return field_.error({low, high, high}, {1.0 - t, t, 0.0}, truth);
-                          });
-      if (knots.at.empty()) continue;
-      add_cut(a, b, knots.at, knots.worst * look.area_mm2);
-      divided.insert(side_key(a, b));
-    }
-    for (const TriangleLook& look : inside_) {
-      const FieldTriangle& t = mesh_.triangles[look.triangle];
-      if (look.worst <= kGoodEnough) continue;
-      const bool is_divided = divided.count(side_key(t[0], t[1])) + divided.count(side_key(t[1], t[2])) +
-                                  divided.count(side_key(t[2], t[0])) >
-                              0;
-      const auto [k, length] = longest_side(t);
-      if (!is_divided && length > 2.0 * kShortest)
-        add_cut(t[k], t[(k + 1) % 3], {0.5}, look.worst * look.area_mm2);
-    }
+    cut_sides();
+    cut_inside();
     std::vector<Cut*> best;
     for (auto& [key, cut] : found_) best.push_back(&cut);
     std::sort(best.begin(), best.end(), [](const Cut* x, const Cut* y) {
@@ -345,29 +297,30 @@ class FieldOnMesh {
 
   /// Of a side of a triangle, from a to b: its new vertices, made once for all triangles that share it.
   std::vector<uint32_t> vertices_on(uint32_t a, uint32_t b) {
-    const auto cut = cuts_.find(side_key(welded_[a], welded_[b]));
+    const auto cut = cuts_.find(side_key(borders_.welded[a], borders_.welded[b]));
     if (cut == cuts_.end()) return {};
     const uint32_t low = std::min(a, b), high = std::max(a, b);
     const auto [made, is_new] = made_.try_emplace(side_key(a, b));
     if (is_new)
       for (const double t : cut->second) made->second.push_back(add_vertex(low, high, t));
     std::vector<uint32_t> out = made->second;
-    if ((a == low) != (welded_[low] < welded_[high])) std::reverse(out.begin(), out.end());
+    if ((a == low) != (borders_.welded[low] < borders_.welded[high])) std::reverse(out.begin(), out.end());
     return out;
   }
 
   /// `t`: from the end that is the lesser welded vertex, so that all copies get the same bits.
   uint32_t add_vertex(uint32_t a, uint32_t b, double t) {
-    if (welded_[a] > welded_[b]) std::swap(a, b);
+    if (borders_.welded[a] > borders_.welded[b]) std::swap(a, b);
     const auto vertex = static_cast<uint32_t>(mesh_.positions.size());
-    mesh_.positions.push_back(field_floats(position(a) + t * (position(b) - position(a))));
-    mesh_.normals.push_back(field_floats(
-        ((1.0 - t) * field_point(mesh_.normals[a]) + t * field_point(mesh_.normals[b])).normalized()));
+    mesh_.positions.push_back(floats_of(position(a) + t * (position(b) - position(a))));
+    mesh_.normals.push_back(
+        floats_of(((1.0 - t) * vec3_of(mesh_.normals[a]) + t * vec3_of(mesh_.normals[b])).normalized()));
     const float x = mesh_.deviation_um[a], y = mesh_.deviation_um[b];
     mesh_.deviation_um.push_back(x + static_cast<float>(t) * (y - x));
-    inset_.push_back((1.0 - t) * inset_[a] + t * inset_[b]);
-    on_crease_.push_back(on_crease_[a] != 0 && on_crease_[b] != 0 ? 1 : 0);
-    welded_.push_back(welded_at_.try_emplace({side_key(welded_[a], welded_[b]), t}, vertex).first->second);
+    borders_.inset.push_back((1.0 - t) * borders_.inset[a] + t * borders_.inset[b]);
+    borders_.on_crease.push_back(borders_.on_crease[a] != 0 && borders_.on_crease[b] != 0 ? 1 : 0);
+    borders_.welded.push_back(
+        welded_at_.try_emplace({side_key(borders_.welded[a], borders_.welded[b]), t}, vertex).first->second);
     return vertex;
   }
 
@@ -398,9 +351,7 @@ class FieldOnMesh {
 
   const ShownField& field_;
   TriMesh& mesh_;
-  std::vector<uint32_t> welded_;  ///< by vertex: the first at its position
-  std::vector<uint8_t> on_crease_;
-  std::vector<Vec3> inset_;
+  PatchBorders borders_;
   std::vector<uint32_t> active_;         ///< triangles that are to be looked at
   std::unordered_set<uint64_t> looked_;  ///< sides
   std::vector<SideLook> sides_;

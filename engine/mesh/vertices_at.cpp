@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/mesh_distance.h"
+#include "mesh/mixed_corners.h"
 
 namespace swarf::mesh {
 namespace {
@@ -13,19 +14,11 @@ namespace {
 /// A vertex has at least this share of each corner of its triangle.
 constexpr double kInsideShare = 0.01;
 
-Vec3 vector_of(const std::array<float, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-std::array<float, 3> array_of(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 /// Shares of the corners at a point of the triangle's plane; none outside or beside a side.
 std::optional<Vec3> shares_inside(const TriMesh& mesh, uint32_t triangle, const Vec3& point) {
   const auto& t = mesh.triangles[triangle];
-  const Vec3 a = vector_of(mesh.positions[t[0]]), ab = vector_of(mesh.positions[t[1]]) - a,
-             ac = vector_of(mesh.positions[t[2]]) - a;
+  const Vec3 a = vec3_of(mesh.positions[t[0]]), ab = vec3_of(mesh.positions[t[1]]) - a,
+             ac = vec3_of(mesh.positions[t[2]]) - a;
   const Vec3 cross = ab.cross(ac);
   const double area2 = cross.squaredNorm();
   if (!(area2 > 0.0)) return {};
@@ -37,14 +30,9 @@ std::optional<Vec3> shares_inside(const TriMesh& mesh, uint32_t triangle, const 
 /// The triangle becomes three around a new vertex; the numbers of the two that are new are the last.
 void divide_around(TriMesh& mesh, uint32_t triangle, const Vec3& shares) {
   const std::array<uint32_t, 3> t = mesh.triangles[triangle];
-  Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
-  for (size_t k = 0; k < 3; ++k) {
-    place += shares[static_cast<int>(k)] * vector_of(mesh.positions[t[k]]);
-    normal += shares[static_cast<int>(k)] * vector_of(mesh.normals[t[k]]);
-  }
   const auto vertex = static_cast<uint32_t>(mesh.positions.size());
-  mesh.positions.push_back(array_of(place));
-  mesh.normals.push_back(array_of(normal.normalized()));
+  mesh.positions.push_back(floats_of(mixed_corners(mesh.positions, t, shares)));
+  mesh.normals.push_back(floats_of(mixed_corners(mesh.normals, t, shares).normalized()));
   mesh.triangles[triangle] = {t[0], t[1], vertex};
   mesh.triangles.push_back({t[1], t[2], vertex});
   mesh.triangles.push_back({t[2], t[0], vertex});
