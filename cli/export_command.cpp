@@ -96,7 +96,7 @@ void write_meshes(const ExportOptions& options, const reports::FinishedRun& run)
   if (!options.step.empty()) write_step(options, run);
   if (!options.ply.empty()) {
     TriMesh coloured = reports::part_mesh(run);
-    render::colour_by_deviation(coloured, reports::deviation_scale(run.job));
+    render::colour_by_deviation(coloured, reports::deviation_scale(run.job, run.dexels));
     mesh::save_mesh(options.ply, coloured);
     fmt::print("{}: {} triangles with deviation in um, mm\n", options.ply, coloured.triangles.size());
   }

@@ -163,7 +163,8 @@ std::vector<std::string> make_finding_pictures(const FinishedRun& run, const Tri
   for (size_t i = 0; i < most && !progress.stop_requested(); ++i) {
     const sim::Finding& worst = result.findings[groups[i].members.front()];
     if (on_the_surface(worst) && !part.deviation_um.empty()) {
-      if (!coloured) render::colour_by_deviation(coloured.emplace(part), deviation_scale(run.job));
+      if (!coloured)
+        render::colour_by_deviation(coloured.emplace(part), deviation_scale(run.job, run.dexels));
       const double size = mesh::bounds(part).size().maxCoeff();
       files[i] = file_of(i + 1);
       make_place_picture(*coloured, *worst.place_W,

@@ -133,10 +133,12 @@ double animation_scale(const FinishedRun& run) {
 
 namespace {
 
-DisplayMesh display_mesh(const FinishedRun& run, const TriMesh& closed, double max_error_mm) {
-  DisplayMesh display;
-  display.mesh = shown_part(run, mesh::decimate(closed, max_error_mm, &display.error_mm));
-  return display;
+/// Of the part for its own file and for the machine's.
+void add_part(const FinishedRun& run, const TriMesh& closed, double max_error_mm, ReviewModels& models) {
+  TriMesh light = mesh::decimate(closed, max_error_mm, &models.part.error_mm);
+  models.machine_part = mesh::decimate(light, kMachinePartError, nullptr);
+  mesh::split_creases(models.machine_part, kCreaseRad);  // decimate() has joined them
+  models.part.mesh = shown_part(run, std::move(light), kShownVertices, &models.part.colours_off);
 }
 
 }  // namespace
@@ -146,9 +148,9 @@ ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double
   ReviewModels models;
   models.pins = std::move(pins);
   // Each decimates meshes for itself, which keeps one processor.
-  const std::array<std::function<void()>, 3> parts{
-      [&] { models.part = display_mesh(run, closed, max_error_mm); },
-      [&] { models.stages = stock_stages(run, kStages); }, [&] { models.way = program_way(run); }};
+  const std::array<std::function<void()>, 3> parts{[&] { add_part(run, closed, max_error_mm, models); },
+                                                   [&] { models.stages = stock_stages(run, kStages); },
+                                                   [&] { models.way = program_way(run); }};
   side_by_side(
       parts.size(), 2, [&](size_t n) { parts[n](); }, [](size_t) {});
   return models;
@@ -156,14 +158,11 @@ ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double
 
 void show_worst(const FinishedRun& run, std::span<const WorstPlace> worst, ReviewModels& models) {
   add_worst_places(run, worst, models.part.mesh);
-  models.machine_part = mesh::decimate(models.part.mesh, kMachinePartError, nullptr);
-  models.machine_part.deviation_um.clear();
-  mesh::split_creases(models.machine_part, kCreaseRad);  // decimate() has joined them
 }
 
 std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options) {
   auto [measured, rest] = split_by_measure(models.part.mesh);
-  const render::DeviationScale scale = deviation_scale(run.job);
+  const render::DeviationScale scale = deviation_scale(run.job, run.dexels);
   if (options.colours) render::colour_by_deviation(measured, scale);
   const Box box = mesh::bounds(models.part.mesh);
   const TriMesh pin = pin_mesh(kPinShare * box.size().maxCoeff());
@@ -189,6 +188,7 @@ std::string part_glb(const FinishedRun& run, const ReviewModels& models, const G
                   {"deviation_scale_above_um", scale.above_um},
                   {"path_error_mm", models.way.error_mm},
                   {"decimation_error_um", um_from_mm(models.part.error_mm)}};
+  if (!std::isnan(models.part.colours_off)) scene.extras["colours_off_share"] = models.part.colours_off;
   return render::glb_bytes(scene, options.encoding);
 }
 

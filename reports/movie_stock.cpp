@@ -167,16 +167,20 @@ void MovieStock::colour_by_deviation(const std::vector<size_t>& changed,
       vertices[m].push_back(i);
     }
   }
-  sim::measure_mesh({run_.job, run_.cycles, run_.dexels, run_.carried, run_.rays, voxel, false}, fresh);
+  if (measure_ == nullptr) {
+    measure_ = std::make_unique<sim::MeshMeasure>(
+        sim::MeasuredPart{run_.job, run_.cycles, run_.dexels, run_.carried, run_.rays, voxel, false});
+    scale_ = deviation_scale(run_.job, run_.dexels);
+  }
+  measure_->measure(fresh);
   vertices_measured_ += places.size();
   for (size_t n = 0; n < places.size(); ++n)
     now[places[n].mesh][places[n].kept].second = fresh.deviation_um[n];
-  const render::DeviationScale scale = deviation_scale(run_.job);
   for (size_t m = 0; m < made.size(); ++m) {
     for (size_t k = 0; k < now[m].size(); ++k) {
       const float um = now[m][k].second;
       if (std::isfinite(um))
-        made[m]->colours[vertices[m][k]] = render::srgb8_from_linear(render::deviation_colour(um, scale));
+        made[m]->colours[vertices[m][k]] = render::srgb8_from_linear(render::deviation_colour(um, scale_));
     }
     sort_by_key(now[m]);
     deviations_[changed[m]] = std::move(now[m]);

@@ -8,9 +8,11 @@
 
 #include "mesh/tri_mesh.h"
 #include "render/draw_list.h"
+#include "render/figures/colour.h"
 #include "reports/machine_view.h"
 #include "sim/job/scene.h"
 #include "sim/run/cut_along.h"
+#include "sim/run/measured_mesh.h"
 #include "stock/mesher/stock_mesher.h"
 
 namespace swarf::reports {
@@ -52,6 +54,8 @@ class MovieStock {
   std::vector<std::vector<std::pair<uint64_t, int8_t>>> tools_;  ///< by patch: place of a vertex, who cut it
   /// By patch: place and normal of a finished vertex, its deviation, um (NaN: no ray sees it).
   std::vector<std::vector<std::pair<uint64_t, float>>> deviations_;
+  std::unique_ptr<sim::MeshMeasure> measure_;  ///< made when first needed, as is the scale
+  render::DeviationScale scale_{1.0};
   int8_t cutting_;  ///< the last tool that cut
   size_t made_ = 0, vertices_measured_ = 0;
 };

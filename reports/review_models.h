@@ -17,8 +17,9 @@ namespace swarf::reports {
 
 /// The part for the eye, made light enough to be sent around.
 struct DisplayMesh {
-  TriMesh mesh;           ///< shown_part of the decimated mesh
-  double error_mm = 0.0;  ///< that the decimation reached, measured
+  TriMesh mesh;              ///< shown_part of the decimated mesh
+  double error_mm = 0.0;     ///< that the decimation reached, measured
+  double colours_off = 0.0;  ///< share of the area whose colour is off; NaN: not measured (shown_part)
 };
 /// Where metrics.json has a maximum.
 struct WorstPlace {
@@ -52,8 +53,7 @@ struct ReviewModels {
 };
 ReviewModels review_models(const FinishedRun& run, const TriMesh& closed, double max_error_mm,
                            std::vector<ReviewPin> pins);
-/// Gives the part the worst places as vertices (add_worst_places), and the machine its part: before the
-/// files.
+/// Gives the part the worst places as vertices (add_worst_places): before the files.
 void show_worst(const FinishedRun& run, std::span<const WorstPlace> worst, ReviewModels& models);
 
 struct GltfOptions {
@@ -64,7 +64,8 @@ struct GltfOptions {
 
 /// The finished part with deviation as colour and attribute, findings on it as pins, the program's way and
 /// the tool-axis fan as lines, cameras. Of the numbers in asset.extras, decimation_error_um is how far the
-/// level set's mesh is from the part's, path_error_mm how far the program's way from its line.
+/// level set's mesh is from the part's, path_error_mm how far the program's way from its line,
+/// colours_off_share (mesh and STEP designs) the share of the area whose colour shows another deviation.
 std::string part_glb(const FinishedRun& run, const ReviewModels& models, const GltfOptions& options);
 
 /// Links, tools and the stock in its stages with the axes animated over what is shown of the program, and a

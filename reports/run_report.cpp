@@ -465,11 +465,11 @@ ReportData report_data(const sim::Job& job, const sim::Result& result, const Run
     data.hero_caption = files.stills.front().caption;
     data.stills.assign(files.stills.begin() + 1, files.stills.end());
   }
+  const render::DeviationScale scale = deviation_scale(job, result.main.dexels);
   data.viewer = {files.part_glb, files.machine_glb,
-                 job.has_design() ? deviation_colour_bar(deviation_scale(job)) : ColourBar(),
-                 files.animation_scale};
-  data.viewer.colour_bar.low_value = -deviation_scale(job).below_um;
-  data.viewer.colour_bar.high_value = deviation_scale(job).above_um;
+                 job.has_design() ? deviation_colour_bar(scale) : ColourBar(), files.animation_scale};
+  data.viewer.colour_bar.low_value = -scale.below_um;
+  data.viewer.colour_bar.high_value = scale.above_um;
   data.viewer.program = page_program(job, result, files);
   data.viewer.hanging = hanging_note(result.main.surface);
   data.movie_mp4 = files.movie;

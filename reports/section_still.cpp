@@ -250,7 +250,7 @@ void draw_section(const FinishedRun& run, const TriMesh& part, const SectionView
   kinds.push_back(outline(shown_design(run.job).mesh, view, paper));
   colour(kinds.back(), kDesignLine, kDesignWidth, "design");
   const RaysBeside rays = rays_beside(run, view.asked);
-  if (labels) kinds.push_back(whiskers(rays, view, paper, image.width, deviation_scale(run.job)));
+  if (labels) kinds.push_back(whiskers(rays, view, paper, image.width, deviation_scale(run.job, run.dexels)));
   std::erase_if(kinds, [](const render::Strokes& kind) { return kind.pieces.empty(); });
   for (const render::Strokes& kind : kinds) render::draw_strokes(image, kind);
   if (!labels) return;

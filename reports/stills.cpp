@@ -127,7 +127,7 @@ StillKind still_kind(const std::string& name) {
 }
 
 ColourBar deviation_colour_bar(const render::DeviationScale& scale) {
-  ColourBar bar{"Deviation from the design; the scale ends at the scene's limits", "µm", -1.0, 1.0, {}};
+  ColourBar bar{"Deviation from the design", "µm", -1.0, 1.0, {}};
   for (int i = 0; i < kColourStops; ++i) {
     const double um = scale.at(2.0 * i / (kColourStops - 1) - 1.0);
     const auto rgba = render::srgb8_from_linear(render::deviation_colour(um, scale));
@@ -217,7 +217,7 @@ render::Image section_picture(const FinishedRun& run, const TriMesh& part, Still
   double right_px = options.width;
   if (kind == StillKind::kDeviation) {
     coloured = part;
-    const render::DeviationScale scale = deviation_scale(run.job);
+    const render::DeviationScale scale = deviation_scale(run.job, run.dexels);
     render::colour_by_deviation(coloured, scale);
     list.items.push_back({&coloured, Pose::Identity(), kColoured});
     list.items.back().sectioned = true;
@@ -256,7 +256,7 @@ render::Image machine_picture(const FinishedRun& run, const std::string& camera,
 render::Image deviation_still(const FinishedRun& run, const StillPart& part, const std::string& camera,
                               const StillLook& look, const render::StillOptions& options) {
   TriMesh coloured = part.mesh;
-  const render::DeviationScale scale = deviation_scale(run.job);
+  const render::DeviationScale scale = deviation_scale(run.job, run.dexels);
   render::colour_by_deviation(coloured, scale);
   // Only places of rays have values to tell.
   const auto labelled = look.labels ? std::optional(part.measured) : std::nullopt;

@@ -122,23 +122,53 @@ Foot foot_of(const TriMesh& mesh, const Vec3& place, Triangles among) {
   return best;
 }
 
-/// The triangle becomes three around a new vertex in it.
-void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
-  const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
-  const auto vertex = static_cast<uint32_t>(mesh.positions.size());
-  Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
+/// Wide enough that the place is found by who looks for the extreme vertex, far too small to be seen, mm.
+constexpr double kRingMm = 0.02;
+
+Vec3 weighted(const std::vector<std::array<float, 3>>& values, const std::array<uint32_t, 3>& corners,
+              const Vec3& weights) {
+  Vec3 sum = Vec3::Zero();
   for (size_t k = 0; k < 3; ++k) {
-    const auto& n = mesh.normals[corners[k]];
-    place += foot.weights[static_cast<int>(k)] * point_of(mesh, corners[k]);
-    normal += foot.weights[static_cast<int>(k)] * Vec3(n[0], n[1], n[2]);
+    const auto& v = values[corners[k]];
+    sum += weights[static_cast<int>(k)] * Vec3(v[0], v[1], v[2]);
   }
-  const Eigen::Vector3f p = place.cast<float>(), n = normal.normalized().cast<float>();
+  return sum;
+}
+
+/// A new vertex of a triangle, with what is interpolated there.
+uint32_t add_inside(TriMesh& mesh, const std::array<uint32_t, 3>& corners, const Vec3& weights) {
+  const Eigen::Vector3f p = weighted(mesh.positions, corners, weights).cast<float>();
+  const Eigen::Vector3f n = weighted(mesh.normals, corners, weights).normalized().cast<float>();
+  double um = 0.0;
+  for (size_t k = 0; k < 3; ++k) um += weights[static_cast<int>(k)] * mesh.deviation_um[corners[k]];
   mesh.positions.push_back({p.x(), p.y(), p.z()});
   mesh.normals.push_back({n.x(), n.y(), n.z()});
-  mesh.deviation_um.push_back(static_cast<float>(um_from_mm(height_mm)));
-  mesh.triangles[foot.triangle] = {corners[0], corners[1], vertex};
-  mesh.triangles.push_back({corners[1], corners[2], vertex});
-  mesh.triangles.push_back({corners[2], corners[0], vertex});
+  mesh.deviation_um.push_back(static_cast<float>(um));
+  return static_cast<uint32_t>(mesh.positions.size() - 1);
+}
+
+/// The triangle gets a vertex with the height, and around it a ring that keeps what the triangle showed: one
+/// place does not colour a facet of 100 mm.
+void divide(TriMesh& mesh, const Foot& foot, double height_mm) {
+  const std::array<uint32_t, 3> corners = mesh.triangles[foot.triangle];
+  double widest = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    widest = std::max(widest, (point_of(mesh, corners[k]) - point_of(mesh, corners[(k + 1) % 3])).norm());
+  const double share = std::min(0.5, kRingMm / std::max(widest, kRingMm));
+  std::array<uint32_t, 3> ring{};
+  for (size_t k = 0; k < 3; ++k)
+    ring[k] =
+        add_inside(mesh, corners, (1.0 - share) * foot.weights + share * Vec3::Unit(static_cast<int>(k)));
+  const uint32_t vertex = add_inside(mesh, corners, foot.weights);
+  mesh.deviation_um[vertex] = static_cast<float>(um_from_mm(height_mm));
+  mesh.triangles[foot.triangle] = {ring[0], ring[1], vertex};
+  mesh.triangles.push_back({ring[1], ring[2], vertex});
+  mesh.triangles.push_back({ring[2], ring[0], vertex});
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t next = (k + 1) % 3;
+    mesh.triangles.push_back({corners[k], corners[next], ring[next]});
+    mesh.triangles.push_back({corners[k], ring[next], ring[k]});
+  }
 }
 
 /// Where no vertex around the place was measured: a measured triangle on it, too small to be seen.

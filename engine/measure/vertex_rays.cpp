@@ -17,6 +17,10 @@ namespace {
 
 /// Of the slack: of the facets beside an edge the one that agrees with a vertex may be farther by this.
 constexpr double kBeside = 0.25;
+/// Of a distance: a place so much straight below a point has the point over its face.
+constexpr double kStraightOver = 0.9;
+/// Places of two facets are one, mm, and so are normals with this cosine.
+constexpr double kSameFoot = 1e-6, kSameNormal = 0.99999;
 constexpr size_t kVerticesPerTask = 1024;
 constexpr double kNotFound = std::numeric_limits<double>::quiet_NaN();
 
@@ -57,7 +61,47 @@ class DesignPlaces {
     return best;
   }
 
+  /// The distance from the design, outside of it > 0, mm.
+  double signed_distance(const Vec3& p) const {
+    const stock::DesignMesh::Place near = design_.nearest(p);
+    const double height = seen_at(near, p).height_of(p);
+    if (std::abs(height) >= kStraightOver * near.distance_mm) return std::copysign(near.distance_mm, height);
+    return distance_from_edge(near, height, p);
+  }
+
  private:
+  /// Where the nearest place lies on an edge or at a corner, the sum of the normals that meet there decides
+  /// on which side the point is: one of them alone says nothing of a point in its own plane. Nearer to the
+  /// edge of CAD faces than its facets stray, a point that is over one face and under another is as high as
+  /// over that whose plane is nearer.
+  double distance_from_edge(const stock::DesignMesh::Place& near, double height, const Vec3& p) const {
+    const double stray = edge_stray(near.triangle), beside = kSameFoot + stray;
+    std::vector<Vec3> normals;
+    Vec3 sum = Vec3::Zero();
+    double low = height, high = height;
+    design_.distance.each_near(p, near.distance_mm + beside, [&](uint32_t triangle) {
+      const DesignPlace place = seen_at(design_.nearest_on(triangle, p), p);
+      if (!(place.distance_mm <= near.distance_mm + beside) ||
+          (place.point - near.point).norm() > kSameFoot + 2.0 * beside)
+        return;
+      low = std::min(low, place.height_of(p));
+      high = std::max(high, place.height_of(p));
+      if (std::any_of(normals.begin(), normals.end(),
+                      [&](const Vec3& one) { return one.dot(place.normal) > kSameNormal; }))
+        return;
+      normals.push_back(place.normal);
+      sum += place.normal;
+    });
+    if (near.distance_mm <= stray && low <= 0.0 && high >= 0.0) return -low < high ? low : high;
+    return std::copysign(near.distance_mm, normals.empty() ? height : (p - near.point).dot(sum));
+  }
+
+  /// How far the edge of a facet is from that of its face at most, mm.
+  double edge_stray(uint32_t triangle) const {
+    if (design_.under == nullptr) return 0.0;
+    return design_.under->is_curved(triangle) ? design_.under->chord_mm : design_.under->edge_mm;
+  }
+
   static constexpr uint32_t kNone = 0xffffffffU;
 
   /// Of a facet without area none: infinitely far away.
@@ -129,55 +173,50 @@ VertexRay along_own_normal(const TriMesh& part, uint32_t vertex, double slack_mm
 class VertexRays {
  public:
   VertexRays(const VertexRayInput& input, TriMesh& part)
-      : input_(input), places_(input.design), part_(part), starts_(part.positions.size()) {}
+      : input_(input), places_(input.design), part_(part) {}
 
   void measure() {
-    const double beside = kBeside * input_.slack_mm;
-    std::vector<uint8_t> on_face(starts_.size(), 0);
-    parallel_chunks(starts_.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const Vec3 p = as_vec3(part_.positions[i]), normal = as_vec3(part_.normals[i]);
-        const DesignPlace place = places_.at(p, normal, beside);
-        const double height = place.height_of(p);
-        const double aside = (p - place.point - height * place.normal).norm();
-        on_face[i] = place.normal.dot(normal) >= kFaceCosine && aside <= input_.slack_mm ? 1 : 0;
-        starts_[i] = {static_cast<uint32_t>(i), place.point, place.normal, height};
-      }
-    });
     std::vector<VertexRay> rays;
-    for (size_t i = 0; i < starts_.size(); ++i)
-      if (on_face[i] != 0) rays.push_back(starts_[i]);
-    const std::vector<double> ends = ends_of(input_, rays, input_.design.design);
-    for (size_t n = 0; n < rays.size(); ++n) values_.set(rays[n], ends[n], ends[n]);
-    measure_rest();
+    for (uint32_t i = 0; i < part_.positions.size(); ++i)
+      rays.push_back(along_own_normal(part_, i, input_.slack_mm));
+    measure_distances(rays, nullptr);
+    measure_over_design();
   }
 
  private:
-  /// What is not on a face: along its own normal.
-  void measure_rest() {
-    std::vector<VertexRay> rays;
-    for (uint32_t i = 0; i < starts_.size(); ++i) {
-      if (!std::isnan(part_.deviation_um[i])) continue;
-      rays.push_back(along_own_normal(part_, i, input_.slack_mm));
-    }
-    const std::vector<double> ends = ends_of(input_, rays, nullptr);
+  /// Where the rays end in material, and how far that is from the design.
+  void measure_distances(const std::vector<VertexRay>& rays,
+                         const std::shared_ptr<const stock::DesignMesh>& design) {
+    const std::vector<double> ends = ends_of(input_, rays, design);
     std::vector<double> distances(rays.size(), kNotFound);
     parallel_chunks(rays.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) {
-        if (std::isnan(ends[n])) continue;
-        const Vec3 p = rays[n].point + ends[n] * rays[n].normal;
-        const DesignPlace place = places_.at(p, rays[n].normal, 0.0);
-        distances[n] = std::copysign(place.distance_mm, place.height_of(p));
-      }
+      for (size_t n = begin; n < end; ++n)
+        if (!std::isnan(ends[n]))
+          distances[n] = places_.signed_distance(rays[n].point + ends[n] * rays[n].normal);
     });
     for (size_t n = 0; n < rays.size(); ++n) values_.set(rays[n], ends[n], distances[n]);
+  }
+
+  /// What no ray along its own normal has found, but lies over a face of the design: along that face's.
+  void measure_over_design() {
+    std::vector<VertexRay> rays;
+    const double beside = kBeside * input_.slack_mm;
+    for (uint32_t i = 0; i < part_.positions.size(); ++i) {
+      if (!std::isnan(part_.deviation_um[i])) continue;
+      const Vec3 p = as_vec3(part_.positions[i]), normal = as_vec3(part_.normals[i]);
+      const DesignPlace place = places_.at(p, normal, beside);
+      const double height = place.height_of(p);
+      const double aside = (p - place.point - height * place.normal).norm();
+      if (place.normal.dot(normal) >= kFaceCosine && aside <= input_.slack_mm)
+        rays.push_back({i, place.point, place.normal, height});
+    }
+    measure_distances(rays, input_.design.design);
   }
 
   const VertexRayInput& input_;
   DesignPlaces places_;
   TriMesh& part_;
   VertexValues values_{part_};
-  std::vector<VertexRay> starts_;
 };
 
 }  // namespace

@@ -25,12 +25,10 @@ struct VertexRayInput {
 /// Of a design of facets or CAD faces: fills part.deviation_um (um, excess > 0; NaN: not measured). The mesh
 /// has normals.
 ///
-///   on the face   The vertex lies over a place of the design whose normal agrees with its own, and a ray
-///                 there, along the design's normal, ends in the material within the slack of the vertex:
-///                 the deviation is where it ends. Exact for the sweeps and for the design.
-///   elsewhere     Walls of gouges, of what stands and of cusps, undersides of overhangs, corners beyond an
-///                 edge: a ray along the vertex's own normal finds the surface that the sweeps left, within
-///                 the slack, and the deviation is the distance of that place from the design.
+///   along its own normal   A ray finds the surface that the sweeps left within the slack of the vertex: the
+///                 deviation is the distance of that place from the design, as one compares parts.
+///   over the design        No such ray ends there, and the vertex lies over a place of the design whose
+///                 normal agrees with its own: the same along that normal.
 ///   else          Nothing is found, and nothing is said.
 void deviation_by_vertex_rays(const VertexRayInput& input, TriMesh& part);
 

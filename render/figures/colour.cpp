@@ -43,6 +43,10 @@ constexpr std::array<Anchor, 7> kAnchors{{{-1.0, {12, 62, 148, 255}},
                                           {0.66, {240, 128, 34, 255}},
                                           {1.0, {158, 8, 22, 255}}}};
 
+double apart(const Rgb& a, const Rgb& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
 constexpr Rgb kUnknownColour{0.05F, 0.05F, 0.05F};
 
 }  // namespace
@@ -83,6 +87,36 @@ Rgb deviation_colour(double deviation_um, const DeviationScale& scale) {
   const Lab a = oklab_from_linear(linear_from_srgb8(low.srgb));
   const Lab b = oklab_from_linear(linear_from_srgb8(high.srgb));
   return linear_from_oklab(a + t * (b - a));
+}
+
+ColourError::ColourError(const DeviationScale& scale)
+    : scale_(scale),
+      allowed_um_(std::max(kShownWithinUm, kShownWithinShare * std::min(scale.below_um, scale.above_um))) {
+  constexpr int kSteps = 2048;
+  for (int i = 0; i <= kSteps; ++i)
+    colours_.push_back(deviation_colour(scale.at(2.0 * i / kSteps - 1.0), scale));
+}
+
+const Rgb& ColourError::colour_at(double um) const {
+  const double place = std::clamp(scale_.place(um), -1.0, 1.0);
+  return colours_[static_cast<size_t>(std::lround(0.5 * (place + 1.0) * double(colours_.size() - 1)))];
+}
+
+double ColourError::operator()(const std::array<float, 3>& um, const Vec3& shares, float truth_um) const {
+  Rgb mixed{};
+  double read = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const double share = shares[static_cast<int>(k)];
+    const Rgb& colour = colour_at(um[k]);
+    for (size_t c = 0; c < 3; ++c) mixed[c] += static_cast<float>(share) * colour[c];
+    read += share * um[k];
+  }
+  constexpr double kReadShare = 0.1;
+  const double value = std::abs(read - truth_um) / std::max(allowed_um_, kReadShare * std::abs(truth_um));
+  const Rgb& right = colour_at(truth_um);
+  const double aside = std::max(apart(colour_at(truth_um - allowed_um_), right),
+                                apart(colour_at(truth_um + allowed_um_), right));
+  return std::max(value, aside > 0.0 ? apart(mixed, right) / aside : 0.0);
 }
 
 void colour_by_deviation(TriMesh& mesh, const DeviationScale& scale) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "render/draw_list.h"
 
@@ -35,6 +36,26 @@ struct DeviationScale {
 /// the blue-yellow direction, which red-green blindness leaves intact. Interpolated in OKLab (Ottosson 2020).
 /// Beyond the scale: the end colours. NaN (unknown): dark grey, which the scale does not contain.
 Rgb deviation_colour(double deviation_um, const DeviationScale& scale);
+
+/// How well colours between vertices show a deviation, against what is allowed: the greater of
+/// kShownWithinUm and kShownWithinShare of the scale.
+class ColourError {
+ public:
+  explicit ColourError(const DeviationScale& scale);
+  double allowed_um() const { return allowed_um_; }
+  /// A renderer mixes the linear colours of three corners with these values in these shares: how far the
+  /// mixture is from the colour of `truth_um`, in units of the distance of the colours that lie as much aside
+  /// as is allowed. Values beyond the scale, whose colours are one, are to be read within a tenth.
+  double operator()(const std::array<float, 3>& um, const Vec3& shares, float truth_um) const;
+
+ private:
+  const Rgb& colour_at(double um) const;
+
+  DeviationScale scale_;
+  double allowed_um_;
+  std::vector<Rgb> colours_;  ///< at equal distances from place -1 to 1
+};
+inline constexpr double kShownWithinUm = 1.0, kShownWithinShare = 0.02;
 
 /// Fills `mesh.colours` from `mesh.deviation_um`, which must be present.
 void colour_by_deviation(TriMesh& mesh, const DeviationScale& scale);

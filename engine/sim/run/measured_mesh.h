@@ -1,6 +1,7 @@
 // The finished part's mesh with what measuring rays say of each vertex.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "measure/vertex_rays.h"
@@ -32,8 +33,24 @@ bool colours_need_sweeps(const Job& job, const std::vector<stock::SurfaceDexels>
 /// Cusps of planned passes get their normals from the tool axis of each cycle, where sweeps are cycles.
 bool normals_need_cycles(const Job& job);
 
-/// Sets TriMesh::deviation_um (um; NaN where no ray has seen the vertex), and the normals of facets that the
-/// bottom of a flat end left on planned passes to the tool's axis. The mesh has normals.
+/// Measures meshes of one part; what that takes is made once.
+class MeshMeasure {
+ public:
+  explicit MeshMeasure(const MeasuredPart& part);
+  ~MeshMeasure();
+  MeshMeasure(const MeshMeasure&) = delete;
+  MeshMeasure& operator=(const MeshMeasure&) = delete;
+
+  /// Sets TriMesh::deviation_um (um; NaN where no ray has seen the vertex), and the normals of facets that
+  /// the bottom of a flat end left on planned passes to the tool's axis. The mesh has normals.
+  void measure(TriMesh& mesh) const;
+
+ private:
+  struct Tools;
+  std::unique_ptr<Tools> tools_;
+};
+
+/// The same of one mesh.
 void measure_mesh(const MeasuredPart& part, TriMesh& mesh);
 
 }  // namespace swarf::sim

@@ -120,8 +120,8 @@ TEST(VertexRays, OverASurfaceSayTheSameOffItsFace) {
   expect_deviations(places, mesh);
 }
 
-/// A flat end .05 over the top of a shaft leaves a plane: over the angle a the shaft's own normal meets it
-/// (R + .05) / cos a - R above. The facets' chords lie up to 15 um below the shaft.
+/// A flat end .05 over the top of a shaft leaves a plane: at the angle a it lies (R + .05) / cos a - R above.
+/// The facets' chords lie up to 15 um below the shaft.
 TEST(VertexRays, OverACadFaceMeasureTheFace) {
   constexpr double kOver = 0.05;
   constexpr double kFootUm = 0.02;  // the foot is found by steps, on a slope of 12 degrees, half a mm below
@@ -136,7 +136,7 @@ TEST(VertexRays, OverACadFaceMeasureTheFace) {
   for (double y = -4.2; y <= 4.2; y += 0.35) {
     for (const double off : {-kOff, 0.0, kOff}) {
       const Vec3 p = Vec3(0.3 * y, y, kOver + off).cast<float>().cast<double>();
-      const double a = std::atan2(p.y(), p.z() + kShaftRadius);
+      const double a = std::atan2(p.y(), kOver + kShaftRadius);  // on the plane, whatever the vertex is off
       places.push_back({p, Vec3::UnitZ(), 1e3 * ((kShaftRadius + kOver) / std::cos(a) - kShaftRadius),
                         "the plane over the shaft"});
     }
