@@ -190,6 +190,9 @@ SurfaceMetrics measure_surface(const stock::SurfaceDexels& dexels, std::span<con
   std::vector<uint32_t> region_of;
   metrics.excesses =
       find_regions(dexels.field(), tops.heights_mm, tops.blocks, limits.scallop_mm, &region_of);
+  for (Region& region : metrics.excesses)
+    region.end =
+        dexels.field().points[region.ray] + tops.heights_mm[region.ray] * dexels.field().normals[region.ray];
   if (material != nullptr)
     refine_excess(dexels.field(), starts_of(dexels.field(), tops, metrics.excesses, found), region_of,
                   limits.scallop_mm, {*material, sweeps, cutters, index}, metrics);

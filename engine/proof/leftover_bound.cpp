@@ -1,7 +1,6 @@
 #include "proof/leftover_bound.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -170,9 +169,9 @@ class LeftoverSearch {
       told[n] = {prover.found_mm(), prover.top(), prover.foot(), prover.parts(), open_mm};
     };
     for (size_t first = 0; first < told.size(); first += kSlice) {
-      const size_t count = std::min(kSlice, told.size() - first);
-      parallel_chunks(count, 1, [&](size_t n, size_t) { look_at(first + n); });
-      for (size_t n = first; n < first + count; ++n) {
+      const size_t end = std::min(first + kSlice, told.size());
+      parallel_chunks(end - first, 1, [&](size_t n, size_t) { look_at(first + n); });
+      for (size_t n = first; n < end; ++n) {
         take(told[n]);
         far_open_mm_ = std::max(far_open_mm_, told[n].open_mm);
       }
@@ -238,13 +237,19 @@ std::vector<uint8_t> which_stand(const LeftoverQuestion& question, std::span<con
   const measure::SweepIndex index(question.sweeps, question.cutters);
   const std::unique_ptr<const SolidDesign> raw = raw_facets(question.stock);
   const RegionProver prover(question, index, raw.get());
-  constexpr double kLeast = 1e-5;  // mm
+  constexpr double kOnFace = 1e-6;  // mm
+  const auto is_material = [&](const Vec3& x) {
+    return question.stock.raw().distance_mm(x) <= kOnFace && !prover.is_removed(x);
+  };
   std::vector<uint8_t> stand;
   for (const Vec3& top : tops) {
     const Vec3 down = question.design.distance().at(top).foot - top;
-    const std::array<double, 5> shares{kLeast / std::max(down.norm(), kLeast), 1e-3, 0.03, 0.2, 0.5};
-    stand.push_back(std::any_of(shares.begin(), shares.end(),
-                                [&](double share) { return prover.is_leftover(top + share * down); }));
+    bool stands = false;
+    for (const double share : {1e-3, 0.03, 0.2, 0.5}) stands = stands || is_material(top + share * down);
+    for (const double step : {1e-5, 1e-3})
+      for (int n = 0; n < 27 && !stands; ++n)
+        stands = n != 13 && is_material(top + step * Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+    stand.push_back(stands ? 1 : 0);
   }
   return stand;
 }

@@ -50,7 +50,7 @@ struct LeftoverBound {
   size_t regions = 0, parts = 0;
 };
 
-/// Of each place where material ends by the rays, W, mm: 1 where there is material just below it. Sweeps that
+/// Of each place where material ends by the rays, W, mm: 1 where there is material beside it. Sweeps that
 /// meet edge to edge leave a ray between them and nothing else.
 std::vector<uint8_t> which_stand(const LeftoverQuestion& question, std::span<const Vec3> tops);
 

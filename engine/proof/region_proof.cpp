@@ -151,10 +151,13 @@ mesh::SignedPoint RegionProver::nearest(const Vec3& x, const Region& region, dou
 }
 
 bool RegionProver::is_leftover(const Vec3& x) const {
-  if (!(in_.stock.raw().distance_mm(x) < -kTouch)) return false;
+  return in_.stock.raw().distance_mm(x) < -kTouch && !is_removed(x);
+}
+
+bool RegionProver::is_removed(const Vec3& x) const {
   std::vector<uint32_t> found;
   index_.find({x, x}, found);
-  return std::none_of(found.begin(), found.end(), [&](uint32_t n) {
+  return std::any_of(found.begin(), found.end(), [&](uint32_t n) {
     const stock::CutterSolid& cutter = in_.cutters[n];
     for (size_t piece = 0; piece < cutter.pieces.size(); ++piece)
       if (SweepSet(in_.sweeps[n], cutter, piece, x).value(x) <= kTouch) return true;

@@ -35,6 +35,8 @@ class RegionProver {
 
   /// In the raw stock, and farther than a touch from all that the sweeps remove.
   bool is_leftover(const Vec3& x) const;
+  /// By a sweep, or no farther than a touch from what one removes.
+  bool is_removed(const Vec3& x) const;
 
   double found_mm() const { return found_mm_; }
   const Vec3& top() const { return top_; }

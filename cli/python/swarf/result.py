@@ -23,6 +23,7 @@ class Finding:
     line_last: int  #: of a row of blocks the last one's, else `line`
     block: str  #: its text
     t_s: typing.Optional[float]  #: program time, s
+    earlier: typing.Optional[dict]  #: file and line of an earlier set-up's block that cut the place
     place_mm: typing.Optional[typing.List[float]]  #: on the part, in the work frame, where it is worst
     machine_place_mm: typing.Optional[typing.List[float]]  #: of a contact, in the machine at t_s
     number: int  #: of its fault in the page: report.html#finding-N

@@ -239,7 +239,7 @@ def engraved_v():
         return p
 
     Job("engraved_v", "Engraved V lines", part, ((-40, -20, -10), (40, 20, 1)), [t1, t2], program,
-        Fault("gouge", 12, (24, 10, -0.4), "letter 2", "one line is 24 um too deep, 12 um square to its walls"))
+        Fault("gouge", 24, (24, 10, -0.4), "letter 2", "one line is 24 um too deep"))
 
 
 # -- 18 -----------------------------------------------------------------------------------------------------------
