@@ -35,8 +35,8 @@ void begin_run(const PendingFolder& folder, const sim::Job& job, const OutputOpt
 /// Writes everything into `folder` beside what the run has saved there already, and moves it into place: an
 /// earlier result is replaced whole; it stays until then. Stock, rays and numbers come first:
 /// when one of them cannot be written, InputError says why, and what could be is kept beside the target. What
-/// goes wrong with pictures and page is returned; the rest is there. Result::left_out names what the budget did
-/// not allow.
+/// goes wrong with pictures and page is returned; the rest is there. Result::left_out names what the budget
+/// did not allow.
 std::vector<Diagnostic> write_run(PendingFolder& folder, const sim::Job& job, sim::Result& result,
                                   const OutputOptions& options, Progress& progress);
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/units.h"
+#include "mesh/facet_chord.h"
 
 namespace swarf::sim {
 namespace {
@@ -164,6 +166,26 @@ void check_design_place(const Job& job, Diagnostics& diagnostics) {
                     "material is missing that nobody cuts, and counts as missing",
                     place.beyond.mm, farthest.x(), farthest.y(), farthest.z()),
         remedy(job, place.box));
+}
+
+void check_facet_chord(const Job& job, const TriMesh& mesh, Diagnostics& diagnostics) {
+  const AcceptLimits& accept = job.scene.accept;
+  if (!accept.gouge_max_um && !accept.excess_max_um) return;
+  const mesh::FacetChord chord = mesh::estimate_facet_chord(mesh);
+  const double chord_um = um_from_mm(chord.mm);
+  const auto tell = [&](const char* key, std::optional<double> limit_um) {
+    if (!limit_um || chord_um <= *limit_um) return;
+    diagnostics.warning(
+        "limit-below-facets", {job.scene.design.mesh_file},
+        fmt::format(
+            "accept.{} = {:g} um is below what the facets allow: they lie about {:.2g} um off the curved "
+            "face at ({:.3f}, {:.3f}, {:.3f}) mm (estimated from their angles)",
+            key, *limit_um, chord_um, chord.place.x(), chord.place.y(), chord.place.z()),
+        fmt::format("give the part as STEP ([design] step), export finer facets, or allow {:.2g} um",
+                    chord_um + *limit_um));
+  };
+  tell("gouge_max_um", accept.gouge_max_um);
+  tell("excess_max_um", accept.excess_max_um);
 }
 
 }  // namespace swarf::sim

@@ -22,6 +22,10 @@ DesignBeyond design_beyond(const Job& job);
 /// which offset the two would meet.
 void check_design_place(const Job& job, Diagnostics& diagnostics);
 
+/// Warning "limit-below-facets": a limit that a right part may break against the facets of its curved faces,
+/// with the place where they lie farthest off.
+void check_facet_chord(const Job& job, const TriMesh& mesh, Diagnostics& diagnostics);
+
 /// "X 0.000 to 40.000, Y .. mm".
 std::string spoken_box(const Box& box);
 

@@ -12,7 +12,6 @@
 #include "brep/model.h"
 #include "brep/refine_facets.h"
 #include "cutter/profile.h"
-#include "mesh/facet_chord.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
@@ -391,27 +390,6 @@ double pitch_of(const TriMesh& mesh) {
   return std::max(kFinest, kStep * std::round(std::sqrt(area / kRays) / kStep));
 }
 
-/// Limits that a right part may break against facets of curved faces.
-void tell_facet_chord(const Job& job, const TriMesh& mesh, Diagnostics& diagnostics) {
-  const AcceptLimits& accept = job.scene.accept;
-  if (!accept.gouge_max_um && !accept.excess_max_um) return;
-  const mesh::FacetChord chord = mesh::estimate_facet_chord(mesh);
-  const double chord_um = um_from_mm(chord.mm);
-  const auto tell = [&](const char* key, std::optional<double> limit_um) {
-    if (!limit_um || chord_um <= *limit_um) return;
-    diagnostics.warning(
-        "limit-below-facets", {job.scene.design.mesh_file},
-        fmt::format(
-            "accept.{} = {:g} um is below what the facets allow: they lie about {:.2g} um off the curved "
-            "face at ({:.3f}, {:.3f}, {:.3f}) mm (estimated from their angles)",
-            key, *limit_um, chord_um, chord.place.x(), chord.place.y(), chord.place.z()),
-        fmt::format("give the part as STEP ([design] step), export finer facets, or allow {:.2g} um",
-                    chord_um + *limit_um));
-  };
-  tell("gouge_max_um", accept.gouge_max_um);
-  tell("excess_max_um", accept.excess_max_um);
-}
-
 void load_design(Job& job, Diagnostics& diagnostics) {
   DesignSettings& design = job.scene.design;
   // The part that drives is the design.
@@ -441,7 +419,7 @@ void load_design(Job& job, Diagnostics& diagnostics) {
     mesh::check_design_mesh(*mesh, design.mesh_file, box, diagnostics);
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     if (!diagnostics.has_errors()) mesh::check_apart(*mesh, design.mesh_file, diagnostics, "design mesh");
-    if (design.mesh_key != "step" && !diagnostics.has_errors()) tell_facet_chord(job, *mesh, diagnostics);
+    if (design.mesh_key != "step" && !diagnostics.has_errors()) check_facet_chord(job, *mesh, diagnostics);
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
     if (!design.pitch_given && !job.scene.driven) design.pitch_mm = pitch_of(*mesh);

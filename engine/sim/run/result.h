@@ -104,7 +104,7 @@ struct Result {
   MemoryPrediction memory;
   std::vector<Check> checks;  ///< what the verdict rests on; empty when the run was stopped
   std::vector<Finding> findings;
-  bool stopped = false;  ///< the user stopped it; what follows the cut is missing
+  bool stopped = false;               ///< the user stopped it; what follows the cut is missing
   std::vector<std::string> left_out;  ///< pictures and files that the time budget did not allow
 };
 
