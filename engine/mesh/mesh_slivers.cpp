@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace swarf::mesh {
@@ -50,12 +51,14 @@ bool flip(WeldedMesh& mesh, uint32_t sliver, const Height& height, uint32_t neig
 
 }  // namespace
 
-void flip_slivers(WeldedMesh& mesh, double height_mm) {
+double flip_slivers(WeldedMesh& mesh, double height_mm) {
+  double moved_mm = 0.0;
   for (int round = 0; round < kRoundsMost; ++round) {
     const std::vector<uint32_t> across = facets_across(mesh.triangles);
     // Their sides are no longer as `across` knows them.
     std::vector<uint8_t> changed(mesh.triangles.size(), 0);
     bool flipped = false;
+    double highest = 0.0;
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       if (changed[i] != 0) continue;
       const Height height = height_of(mesh, mesh.triangles[i]);
@@ -64,9 +67,26 @@ void flip_slivers(WeldedMesh& mesh, double height_mm) {
       if (neighbour == kNobody || changed[neighbour] != 0 || !flip(mesh, i, height, neighbour)) continue;
       changed[i] = changed[neighbour] = 1;
       flipped = true;
+      highest = std::max(highest, height.mm);
     }
-    if (!flipped) return;
+    if (!flipped) break;
+    moved_mm += highest;
   }
+  return moved_mm;
+}
+
+double flip_slivers(TriMesh& mesh, double height_mm) {
+  WeldedMesh welded = weld(mesh);
+  const std::vector<std::array<uint32_t, 3>> before = welded.triangles;
+  const double moved_mm = flip_slivers(welded, height_mm);
+  if (welded.triangles == before) return 0.0;
+  mesh = {};
+  for (const Vec3& p : welded.points) {
+    const Eigen::Vector3f f = p.cast<float>();
+    mesh.positions.push_back({f.x(), f.y(), f.z()});
+  }
+  mesh.triangles = std::move(welded.triangles);
+  return moved_mm;
 }
 
 }  // namespace swarf::mesh

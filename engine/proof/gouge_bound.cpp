@@ -20,12 +20,19 @@ namespace {
 
 constexpr size_t kSweepsPerTask = 32;
 /// Bodies of one cutter that lie within one depth of it: for each piece, the ways to reduce it.
-using CutterBodies = std::vector<std::vector<collision::RevolvedSolid>>;
+using CutterBodies = std::vector<std::vector<ReducedBody>>;
 
 CutterBodies bodies_of(const stock::CutterSolid& cutter, double g_mm) {
   CutterBodies bodies;
   for (const cutter::ConvexPiece& piece : cutter.pieces) bodies.push_back(reduced_bodies(piece, g_mm));
   return bodies;
+}
+
+/// What the first body that is not clear meets; nothing: all are clear.
+Meeting first_meeting(SweepPassage& passage, const stock::Sweep& sweep, const ReducedBody& bodies) {
+  for (const collision::RevolvedSolid& solid : bodies)
+    if (const Meeting one = passage.meets(sweep, solid)) return one;
+  return {};
 }
 
 std::array<Vec3, 3> corners_of(const SolidDesign& design, uint32_t facet) {
@@ -211,11 +218,9 @@ class GougeSearch {
         const uint32_t n = sweeps[i].sweep;
         for (const auto& ways : bodies.at(&in_.cutters[n])) {
           Meeting least = ways.empty() ? Meeting() : Meeting(kInside);
-          for (const collision::RevolvedSolid& solid : ways) {
-            const Meeting one = passage.meets(in_.sweeps[n], solid);
-            if (!one) least.reset();
-            if (!one) break;
-            least = one;
+          for (const ReducedBody& body : ways) {
+            least = first_meeting(passage, in_.sweeps[n], body);
+            if (!least) break;
           }
           if (!least) continue;
           met[i] = least;

@@ -1,6 +1,7 @@
 #include "proof/tool_body.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/units.h"
@@ -96,6 +97,84 @@ collision::RevolvedSolid shrunk(collision::RevolvedSolid body, double inward, do
   return body;
 }
 
+/// How far faces may go in, of a depth, so that the rim of the upper end stays within it: a flank that leans
+/// leaves its rim farther off than the flank itself.
+double rim_share(const ConvexPiece& piece) {
+  constexpr double kOnRim = 1e-9;  // mm
+  double rim = piece.radius, share = 1.0;
+  const auto radius_at_top = [&](const Face& face) {
+    return (face.offset - face.normal.y() * piece.high) / face.normal.x();
+  };
+  const auto leans = [](const Face& face) { return !is_top(face) && face.normal.x() > 0.0; };
+  for (const Face& face : piece.faces)
+    if (leans(face)) rim = std::min(rim, radius_at_top(face));
+  for (const Face& face : piece.faces)
+    if (leans(face) && radius_at_top(face) <= rim + kOnRim) share = std::min(share, face.normal.x());
+  return share;
+}
+
+/// A tip on the axis, under a cone.
+bool is_pointed(const std::vector<Vec2>& outline) {
+  constexpr double kFlat = 1e-9;  // mm
+  return outline.size() > 1 && outline[0].x() == 0.0 && outline[1].y() > outline[0].y() + kFlat;
+}
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 way = b - a;
+  const double length2 = way.squaredNorm();
+  const double share = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - share * way).norm();
+}
+
+/// From the corners of an outline but its tip to a smaller outline within it: the farthest, mm.
+double farthest_corner(const std::vector<Vec2>& outline, const std::vector<Vec2>& within) {
+  double farthest = 0.0;
+  for (size_t i = 1; i < outline.size(); ++i) {
+    if (outline[i].x() == 0.0) continue;  // of the upper end
+    double nearest = (outline[i] - within.front()).norm();
+    for (size_t k = 0; k + 1 < within.size(); ++k)
+      nearest = std::min(nearest, distance_to_segment(outline[i], within[k], within[k + 1]));
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
+}
+
+/// How a pointed piece is made smaller: rounds stand out by `outward`, the point's cone goes in by as much of
+/// `g` as corners allow, other faces by a share of that. All mm.
+struct PointedReduction {
+  double outward = 0.0, g = 0.0, flank_share = 1.0;
+};
+constexpr std::array<double, 2> kFlankShares{1.0, 0.1};
+
+/// The faces of a piece with a tip moved inwards so far that every corner is within g of what is left, and
+/// the axis under it. A point of the cone over the foot of the new tip is within g of the new cone; the piece
+/// below, whose hull the old tip and that ring span, is within g of the axis. Empty: nothing is left.
+ReducedBody pointed_body(const ConvexPiece& piece, const std::vector<Vec2>& outline,
+                         const PointedReduction& by) {
+  const Vec2 tip = outline[0], cone = outline[1] - tip;
+  const Vec2 cone_normal = Vec2(cone.y(), -cone.x()).normalized();
+  const std::vector<Face> planes = half_planes(piece, by.outward);
+  const auto moved_in = [&](double mm) {
+    std::vector<Face> inner = planes;
+    for (Face& plane : inner) {
+      if (is_top(plane)) continue;
+      constexpr double kSame = 1e-9;
+      plane.offset -= (plane.normal - cone_normal).norm() < kSame ? mm : by.flank_share * mm;
+    }
+    return polygon_of(inner, piece.radius + 1.0, piece.low - 1.0, piece.high);
+  };
+  // Corners move in proportion; a second look keeps the proof whatever the shape is.
+  const std::vector<Vec2> first = moved_in(by.g);
+  if (first.empty()) return {};
+  const double scale = std::min(1.0, (1.0 - 1e-9) * by.g / farthest_corner(outline, first));
+  const std::vector<Vec2> inner = moved_in(scale * by.g);
+  if (inner.empty() || !is_pointed(inner) || farthest_corner(outline, inner) > by.g) return {};
+  // The foot of the new tip must lie on the cone.
+  if ((inner[0] - tip).dot(cone) > cone.squaredNorm()) return {};
+  const double lowest = std::min(tip.y() + by.g, inner[0].y());
+  return {solid_of(inner), solid_of({{0.0, lowest}, inner[0]})};
+}
+
 }  // namespace
 
 collision::RevolvedSolid piece_body(const ConvexPiece& piece, double outward_mm) {
@@ -103,22 +182,28 @@ collision::RevolvedSolid piece_body(const ConvexPiece& piece, double outward_mm)
       polygon_of(half_planes(piece, outward_mm), piece.radius + 1.0, piece.low - 1.0, piece.high));
 }
 
-std::vector<collision::RevolvedSolid> reduced_bodies(const ConvexPiece& piece, double g_mm) {
+std::vector<ReducedBody> reduced_bodies(const ConvexPiece& piece, double g_mm) {
   const double outward = kOutwardShare * g_mm, g = (1.0 - kOutwardShare) * g_mm;
-  std::vector<collision::RevolvedSolid> bodies;
+  std::vector<ReducedBody> bodies;
   if (is_smooth(piece, g_mm)) {
     std::vector<Face> planes = half_planes(piece, outward);
     for (Face& plane : planes)
-      if (!is_top(plane)) plane.offset -= g;
+      if (!is_top(plane)) plane.offset -= rim_share(piece) * g;
     std::vector<Vec2> corners = polygon_of(planes, piece.radius + 1.0, piece.low - 1.0, piece.high);
-    if (!corners.empty()) bodies.push_back(solid_of(std::move(corners)));
+    if (!corners.empty()) bodies.push_back({solid_of(std::move(corners))});
   }
   const collision::RevolvedSolid whole = piece_body(piece, outward);
   if (whole.corners.empty()) return bodies;
+  if (is_pointed(whole.corners)) {
+    for (const double share : kFlankShares) {
+      ReducedBody body = pointed_body(piece, whole.corners, {outward, g, share});
+      if (!body.empty()) bodies.push_back(std::move(body));
+    }
+  }
   // Never along one direction alone: a floor and a flank that are touched would not be left.
   for (const double degrees : {45.0, 5.0, 85.0, 22.5, 67.5}) {
     const double angle = rad_from_deg(degrees);
-    bodies.push_back(shrunk(whole, g * std::cos(angle), g * std::sin(angle)));
+    bodies.push_back({shrunk(whole, g * std::cos(angle), g * std::sin(angle))});
   }
   return bodies;
 }

@@ -8,6 +8,8 @@
 //   shrunk    every point of K goes towards the axis by b and towards the middle of its height by at most a,
 //             a^2 + b^2 <= g^2
 //   erosion   for a K without sharp edges below: the points with a ball of radius g in K
+//   pointed   for a K with a sharp tip: its faces moved inwards, which leaves the tip too far off, and with it
+//             a piece of the axis from g over the tip up to the point of what is left
 #pragma once
 
 #include <vector>
@@ -23,7 +25,10 @@ inline constexpr double kOutwardShare = 0.02;
 /// The piece in the tool's frame, its rounds as polygons that stand out by at most `outward_mm`.
 collision::RevolvedSolid piece_body(const cutter::ConvexPiece& piece, double outward_mm);
 
+/// Convex bodies that together make one K' of a piece: all of them must be clear.
+using ReducedBody = std::vector<collision::RevolvedSolid>;
+
 /// Smaller bodies of the piece as above, for a depth of g mm; the first serves best.
-std::vector<collision::RevolvedSolid> reduced_bodies(const cutter::ConvexPiece& piece, double g_mm);
+std::vector<ReducedBody> reduced_bodies(const cutter::ConvexPiece& piece, double g_mm);
 
 }  // namespace swarf::proof

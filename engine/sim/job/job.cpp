@@ -16,6 +16,7 @@
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
 #include "mesh/mesh_ops.h"
+#include "mesh/mesh_slivers.h"
 #include "position/part_check.h"
 #include "position/patch_joints.h"
 #include "sim/job/clamping_check.h"
@@ -376,6 +377,10 @@ TriMesh load_design_mesh(const Job& job, Diagnostics& diagnostics) {
   return mesh;
 }
 
+/// Facets no higher than this are turned by the rounding of their corners, mm: neither rays nor proofs can
+/// rest on their planes.
+constexpr double kSliverHeight = 2e-4;
+
 /// Rays find what the proof decides: about so many of them over the whole design.
 double pitch_of(const TriMesh& mesh) {
   constexpr double kRays = 20'000.0, kFinest = 0.2, kStep = 0.05;  // mm
@@ -420,11 +425,12 @@ void load_design(Job& job, Diagnostics& diagnostics) {
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     if (!diagnostics.has_errors()) mesh::check_apart(*mesh, design.mesh_file, diagnostics, "design mesh");
     if (design.mesh_key != "step" && !diagnostics.has_errors()) check_facet_chord(job, *mesh, diagnostics);
+    const double moved_mm = job.design_under == nullptr ? mesh::flip_slivers(*mesh, kSliverHeight) : 0.0;
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
     if (!design.pitch_given && !job.scene.driven) design.pitch_mm = pitch_of(*mesh);
     job.design_mesh = std::move(mesh);
-    if (job.design_under == nullptr) job.proof = job.proof_outside = {job.design_mesh, 0.0};
+    if (job.design_under == nullptr) job.proof = job.proof_outside = {job.design_mesh, moved_mm};
   }
 }
 

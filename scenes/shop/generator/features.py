@@ -228,8 +228,8 @@ def engraved_v():
         for k, letter in enumerate(letters):
             p.rapid(*letter[0])
             p.rapid(z=NEAR)
-            p.line(z=-0.424 if fault and k == 2 else -depth, f=100)
             p.mark(f"letter {k}")
+            p.line(z=-0.424 if fault and k == 2 else -depth, f=100)
             for x, y in letter[1:]:
                 p.line(x, y, f=400)
             p.mark_end(f"letter {k}")

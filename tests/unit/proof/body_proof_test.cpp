@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "base/units.h"
 #include "proof/gouge_bound.h"
 #include "proof/leftover_bound.h"
 #include "proof/polytope.h"
@@ -18,6 +19,7 @@ namespace {
 using swarf::Box;
 using swarf::Progress;
 using swarf::TriMesh;
+using swarf::Vec2;
 using swarf::Vec3;
 using swarf::stock::CutterSolid;
 using swarf::stock::Stock;
@@ -294,23 +296,81 @@ TEST(BodyProof, EveryPointOutsideLiesOverItsNearestFeature) {
   EXPECT_GT(outside, 500);
 }
 
-TEST(ToolBody, EveryPointOfTheCutterIsNearTheReducedBody) {
-  const double g = 0.05;
-  swarf::cutter::Cutter ball;
-  ball.shape = swarf::cutter::Shape::kBall;
-  ball.diameter_mm = 10.0;
+swarf::cutter::Cutter cutter_of(swarf::cutter::Shape shape, double diameter) {
+  swarf::cutter::Cutter cutter;
+  cutter.shape = shape;
+  cutter.diameter_mm = diameter;
+  cutter.flute_length_mm = 20.0;
+  return cutter;
+}
+
+/// A ball; a V tool, a drill and a chamfer tool with sharp tips; a ball on a flank of 15 degrees.
+std::vector<CutterSolid> cutters_to_reduce() {
+  using swarf::cutter::Shape;
+  std::vector<CutterSolid> cutters{CutterSolid(5.0, 20.0)};
+  swarf::cutter::Cutter ball = cutter_of(Shape::kBall, 10.0);
   ball.corner_radius_mm = 5.0;
-  for (const CutterSolid& cutter : {CutterSolid(5.0, 20.0), CutterSolid(ball)}) {
-    const auto& piece = cutter.pieces.front();
-    for (const auto& body : swarf::proof::reduced_bodies(piece, g)) {
-      // In each direction across the outline the body reaches as far as the cutter, less g.
-      for (double angle = -1.57; angle < 1.57; angle += 0.05) {
-        const Vec3 d(std::cos(angle), 0.0, std::sin(angle));
-        const double whole = d.dot(support(swarf::proof::piece_body(piece, 1e-4), d));
-        EXPECT_GE(d.dot(support(body, d)), whole - 1e-4 - g);
+  cutters.emplace_back(ball);
+  for (const double point : {30.0, 60.0, 90.0}) {
+    swarf::cutter::Cutter chamfer = cutter_of(Shape::kChamfer, 6.0);
+    chamfer.point_angle_rad = swarf::rad_from_deg(point);
+    chamfer.tip_diameter_mm = 0.0;
+    cutters.emplace_back(chamfer);
+  }
+  for (const double point : {118.0, 140.0}) {
+    swarf::cutter::Cutter drill = cutter_of(Shape::kDrill, 6.8);
+    drill.point_angle_rad = swarf::rad_from_deg(point);
+    cutters.emplace_back(drill);
+  }
+  swarf::cutter::Cutter tapered = cutter_of(Shape::kTaper, 4.0);
+  tapered.corner_radius_mm = 2.0;
+  tapered.taper_rad = swarf::rad_from_deg(15.0);
+  cutters.emplace_back(tapered);
+  return cutters;
+}
+
+/// From a place (rho, z) to a profile whose corners go up along a convex outline, mm.
+double distance_to(const swarf::collision::RevolvedSolid& solid, const Vec2& p) {
+  std::vector<Vec2> chain{{0.0, solid.corners.front().y()}};
+  const double lowest = solid.corners.front().y() + 1e-12;
+  for (const Vec2& corner : solid.corners)
+    if (corner.x() > 0.0 || corner.y() > lowest) chain.push_back(corner);
+  chain.emplace_back(0.0, solid.corners.back().y());
+  bool inside = true;
+  double least = 1e9;
+  for (size_t k = 0; k + 1 < chain.size(); ++k) {
+    const Vec2 way = chain[k + 1] - chain[k], from = p - chain[k];
+    const double length2 = way.squaredNorm();
+    inside = inside && way.x() * from.y() - way.y() * from.x() >= 0.0;
+    const double share = length2 > 0.0 ? std::clamp(from.dot(way) / length2, 0.0, 1.0) : 0.0;
+    least = std::min(least, (from - share * way).norm());
+  }
+  return inside && solid.corners.size() > 2 ? 0.0 : least;
+}
+
+TEST(ToolBody, EveryPointOfTheCutterIsNearTheReducedBody) {
+  int pointed = 0;
+  for (const double g : {0.002, 0.05, 0.4}) {
+    for (const CutterSolid& cutter : cutters_to_reduce()) {
+      const auto& piece = cutter.pieces.front();
+      const auto outline = swarf::proof::piece_body(piece, 1e-6).corners;
+      for (const swarf::proof::ReducedBody& bodies : swarf::proof::reduced_bodies(piece, g)) {
+        pointed += bodies.size() > 1 ? 1 : 0;
+        for (size_t k = 0; k + 1 < outline.size(); ++k) {
+          for (int i = 0; i <= 60; ++i) {
+            // Denser near the lower corner, where a tip may be.
+            const double share = std::pow(i / 60.0, 3.0);
+            const Vec2 p = outline[k] + share * (outline[k + 1] - outline[k]);
+            double least = 1e9;
+            for (const auto& body : bodies) least = std::min(least, distance_to(body, p));
+            ASSERT_LE(least, g + 2e-6) << "g " << g << ", place (" << p.x() << ", " << p.y() << "), radius "
+                                       << piece.radius << ", bodies " << bodies.size();
+          }
+        }
       }
     }
   }
+  EXPECT_EQ(pointed, 30);  // five tools with tips, two ways, three depths
 }
 
 TEST(Polytopes, BothPartsOfACutMakeTheWhole) {
