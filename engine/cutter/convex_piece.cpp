@@ -6,7 +6,6 @@
 #include <limits>
 
 namespace swarf::cutter {
-namespace {}  // namespace
 
 Support support(const Round& round, const Vec2& p) {
   const Vec2 d = p - round.centre;

@@ -39,8 +39,8 @@ const stock::SweepMap& PassHeight::map_of(uint32_t sweep) {
   return known.map;
 }
 
-double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep) {
-  return std::min(kHigh, stock::ray_height(point, normal, map_of(sweep), cutters_[sweep]));
+double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep, double highest) {
+  return std::min(kHigh, stock::ray_height(point, normal, map_of(sweep), cutters_[sweep], highest));
 }
 
 bool PassHeight::removes(const Vec3& point) {
@@ -49,14 +49,14 @@ bool PassHeight::removes(const Vec3& point) {
 }
 
 double PassHeight::operator()(const Vec3& point, const Vec3& normal) {
-  double lowest = height(point, normal, owner_);
+  double lowest = height(point, normal, owner_, kHigh);
   for (const int step : {1, -1}) {
     const uint32_t before = owner_;
     for (;;) {
       const int64_t next = static_cast<int64_t>(owner_) + step;
       if (next < 0 || next >= static_cast<int64_t>(sweeps_.size())) break;
       if (!rule_.same(static_cast<uint32_t>(next), first_)) break;
-      const double candidate = height(point, normal, static_cast<uint32_t>(next));
+      const double candidate = height(point, normal, static_cast<uint32_t>(next), lowest);
       if (candidate >= lowest) break;
       lowest = candidate;
       owner_ = static_cast<uint32_t>(next);

@@ -62,7 +62,8 @@ class PassHeight {
     uint32_t sweep = stock::kUncut;
     stock::SweepMap map;
   };
-  double height(const Vec3& point, const Vec3& normal, uint32_t sweep);
+  /// Heights above `highest` may be told as kHigh.
+  double height(const Vec3& point, const Vec3& normal, uint32_t sweep, double highest);
   const stock::SweepMap& map_of(uint32_t sweep);
 
   std::span<const stock::Sweep> sweeps_;

@@ -8,8 +8,6 @@
 #include "base/units.h"
 
 namespace swarf::measure {
-namespace {}  // namespace
-
 bool larger(const Region& a, const Region& b) {
   return a.worst_um != b.worst_um ? a.worst_um > b.worst_um : a.ray < b.ray;
 }

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/units.h"
 #include "stock/rays/ray_height.h"
+#include "stock/sweep/sweep_map.h"
 
 namespace swarf::measure {
 namespace {
@@ -40,7 +41,8 @@ Lowest lowest_of_all(const Context& context, const stock::Foot& foot, double hei
       return pose.axis_W.dot(foot.normal) >= 0.0 && pose.axis_W.dot(top - pose.tip_W) < lowest_z(cutter);
     };
     if (under(sweep.start) && under(sweep.end)) continue;
-    const double low = stock::ray_height(foot.point, foot.normal, sweep, cutter);
+    const double low =
+        stock::ray_height(foot.point, foot.normal, stock::sweep_map(sweep), cutter, lowest.height_mm);
     if (low < lowest.height_mm && low >= -stock::kSkin) lowest = {low, n};
   }
   return lowest;

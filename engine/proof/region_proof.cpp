@@ -16,6 +16,9 @@ constexpr size_t kMostParts = 4000;   ///< of one region
 constexpr size_t kNearestTried = 12;  ///< sweeps with the nearest tips
 constexpr size_t kRemembered = 6;     ///< sets that closed the regions before
 constexpr size_t kHolders = 8;        ///< sets around a centre that are tried for a whole part
+/// The lowest slab of a region, mm and of what is allowed: few sweeps come so low, and those that do mostly
+/// hold what is above it.
+constexpr double kLeastSlab = 1e-3, kSlabShare = 1.0;
 
 double most_over(const ConvexSet& set, const Polytope& body) {
   double most = -std::numeric_limits<double>::infinity();
@@ -270,10 +273,12 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
     if (part.raw_facets.empty() && raw_->distance().at(centre).distance_mm > 0.0) return std::nullopt;
   }
   if (part.is_root) {
-    found_.clear();
-    index_.find(part.body.box(), found_);
-    if (is_closed_by_nearest(part.body, centre, found_)) return std::nullopt;
-    find_candidates(found_, centre, radius);
+    if (from_ == Candidates::kAll) {
+      found_.clear();
+      index_.find(part.body.box(), found_);
+      if (is_closed_by_nearest(part.body, centre, found_)) return std::nullopt;
+      find_candidates(found_, centre, radius);
+    }
     for (uint32_t n = 0; n < candidates_.size(); ++n) part.near.push_back(n);
   }
   std::vector<std::pair<double, uint32_t>> around;
@@ -325,6 +330,7 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
     const Vec3& normal = raw_->distance().face_normal(n);
     offer(BeyondSet{normal, normal.dot(raw_->distance().corner(n, 0))});
   }
+  if (best == nullptr && from_ == Candidates::kKept) return RegionState::kOpen;
   if (best == nullptr && seen.distance_mm > above_mm && raw.distance_mm < -kTouch) {
     climb(centre, seen.distance_mm);
     return RegionState::kLeftover;
@@ -333,10 +339,12 @@ std::optional<RegionState> RegionProver::look_at(Part& part, const Region& regio
   return std::nullopt;
 }
 
-RegionState RegionProver::prove(const Region& region, double above_mm) {
+RegionState RegionProver::prove_body(const Polytope& body, const Region& region, double above_mm,
+                                     Candidates from) {
   stack_.clear();
   region_parts_ = 0;
-  stack_.push_back({region.body, {}, {}, true});
+  from_ = from;
+  stack_.push_back({body, {}, {}, true});
   while (!stack_.empty()) {
     Part part = std::move(stack_.back());
     stack_.pop_back();
@@ -345,6 +353,21 @@ RegionState RegionProver::prove(const Region& region, double above_mm) {
     if (state) return *state;
   }
   return RegionState::kProven;
+}
+
+RegionState RegionProver::prove(const Region& region, double above_mm) {
+  if (region.height.way.isZero()) return prove_body(region.body, region, above_mm, Candidates::kAll);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& corner : region.body.corners) lowest = std::min(lowest, region.height.way.dot(corner));
+  const auto [slab, rest] =
+      cut_by_plane(region.body, region.height.way, lowest + std::max(kLeastSlab, kSlabShare * above_mm));
+  if (!slab.is_empty()) {
+    const RegionState state = prove_body(slab, region, above_mm, Candidates::kAll);
+    if (state != RegionState::kProven || rest.is_empty()) return state;
+  }
+  if (prove_body(rest, region, above_mm, Candidates::kKept) == RegionState::kProven)
+    return RegionState::kProven;
+  return prove_body(rest, region, above_mm, Candidates::kAll);
 }
 
 }  // namespace swarf::proof

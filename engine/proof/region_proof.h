@@ -56,6 +56,11 @@ class RegionProver {
     bool is_root = false;
   };
 
+  /// Which sweeps are tried: all near the body, or those that the body before was tried with. From kept ones
+  /// leftover is never told.
+  enum class Candidates { kAll, kKept };
+
+  RegionState prove_body(const Polytope& body, const Region& region, double above_mm, Candidates from);
   bool is_closed_by_last(const Polytope& body);
   bool is_closed_by_nearest(const Polytope& body, const Vec3& centre, const std::vector<uint32_t>& sweeps);
   void remember(const Candidate& one);
@@ -74,6 +79,7 @@ class RegionProver {
   std::vector<uint32_t> found_;                       ///< sweeps near the root
   std::vector<std::pair<double, uint32_t>> nearest_;  ///< of them, by the distance of their tips
   std::deque<Candidate> last_;                        ///< that closed a region, the newest first
+  Candidates from_ = Candidates::kAll;
   std::vector<Part> stack_;
   size_t parts_ = 0, region_parts_ = 0;
   double found_mm_ = 0.0;

@@ -64,6 +64,15 @@ double lowest_in_part(const SlabPassage& passage, double t0, double t1, double s
   return std::min(first, lowest_in_part(passage, middle, t1, s, std::min(first, highest)));
 }
 
+/// Whether the ray keeps off the sweep all the way up to `highest`: it is outside there, and on the way down
+/// no nearer to the tangent plane of what is nearest, so F >= floor + (s - highest) n . N(t) > 0.
+bool stays_above(const SlabPassage& passage, double highest) {
+  if (!std::isfinite(highest)) return false;
+  const Nearest nearest = passage.nearest(highest, 0.0, 1.0);
+  return nearest.floor > kMet && nearest.normal.dot(passage.normal_at(0.0)) <= 0.0 &&
+         nearest.normal.dot(passage.normal_at(1.0)) <= 0.0;
+}
+
 }  // namespace
 
 double lowest_in_sweep(const cutter::ConvexPiece& piece, const Vec3& point, const Vec3& direction,
@@ -72,6 +81,7 @@ double lowest_in_sweep(const cutter::ConvexPiece& piece, const Vec3& point, cons
   const bool translation = map.R0t == map.R1t;
   const SlabPassage passage{piece, P, map.end(point) - P, N,
                             translation ? Vec3(Vec3::Zero()) : Vec3(map.R1t * direction - N)};
+  if (stays_above(passage, highest)) return kRayMiss;
   return lowest_in_part(passage, 0.0, 1.0, below_all(passage), highest);
 }
 

@@ -40,18 +40,8 @@ double exit_height(const RayPassage& ray, const cutter::ConvexPiece& piece) {
   return ray_interval(ray.point, ray.normal, ray.map, piece).high;
 }
 
-/// True when no point of the ray up to `limit` lies in the piece's sweep: with n the mean gradient at the
-/// limit, F(X(t, s)) >= floor + (s - limit) n . N(t) for every t and s (convex_ray.h).
-bool passes_above(const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
-  const Vec3 top = ray.at(limit), start = ray.map.start(top);
-  const Nearest nearest = nearest_instant(piece, start, ray.map.end(top) - start);
-  if (nearest.floor <= kBoundSlack) return false;
-  const Vec3 N0 = ray.map.R0t * ray.normal, N1 = ray.map.R1t * ray.normal;
-  return std::max(nearest.normal.dot(N0), nearest.normal.dot(N1)) <= 0.0;
-}
-
-/// True only when no point of the ray up to `limit` lies in a cylinder's sweep: the same for its ends and its
-/// flank. Rays of a wall that other blocks have milled are told apart from those of this one.
+/// True only when no point of the ray up to `limit` lies in a cylinder's sweep: it keeps outside its ends or
+/// its flank. Rays of a wall that other blocks have milled are told apart from those of this one.
 bool passes_beside(const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
   const Vec3 top = ray.at(limit), A = ray.map.start(top), B = ray.map.end(top);
   const Vec3 N0 = ray.map.R0t * ray.normal, N1 = ray.map.R1t * ray.normal;
@@ -94,7 +84,6 @@ RayInterval cut_from(double low, const RayPassage& ray, const cutter::ConvexPiec
 
 RayInterval cut_of_piece(const RayPassage& ray, const cutter::ConvexPiece& piece, double limit) {
   if (!piece.is_cylinder()) {
-    if (passes_above(ray, piece, limit)) return {};
     const double low = lowest_in_sweep(piece, ray.point, ray.normal, ray.map, limit + kBoundSlack);
     return low > limit ? RayInterval{} : cut_from(low, ray, piece, limit);
   }

@@ -200,10 +200,11 @@ double lowest_of_piece(const Vec3& point, const Vec3& direction, const SweepMap&
 
 }  // namespace
 
-double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& map, const CutterSolid& cutter) {
+double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& map, const CutterSolid& cutter,
+                  double highest) {
   double lowest = kMiss;
   for (const cutter::ConvexPiece& piece : cutter.pieces) {
-    lowest = std::min(lowest, lowest_of_piece(point, normal, map, piece, lowest));
+    lowest = std::min(lowest, lowest_of_piece(point, normal, map, piece, std::min(lowest, highest)));
   }
   return lowest;
 }

@@ -18,8 +18,10 @@
 
 namespace swarf::stock {
 
-/// As ray_height(point, normal, sweep, cutter) with the sweep's map made beforehand.
-double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& map, const CutterSolid& cutter);
+/// As ray_height(point, normal, sweep, cutter) with the sweep's map made beforehand. What lies above
+/// `highest` may be told as a miss.
+double ray_height(const Vec3& point, const Vec3& normal, const SweepMap& map, const CutterSolid& cutter,
+                  double highest = std::numeric_limits<double>::infinity());
 
 /// The part of a ray that the sweep of one convex piece covers, mm along the normal.
 struct RayInterval {

@@ -28,6 +28,17 @@ Nearest exactly(const Tangent& at) {
   return {at.t, at.value, at.value, at.normal};
 }
 
+/// Across the axis: F grows with rho, so it is least where the point comes nearest to the axis. What is left of
+/// the motion along the axis changes F by no more than its length.
+Nearest nearest_across(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double t_low,
+                       double t_high) {
+  const double length2 = D.head<2>().squaredNorm();
+  const double t = length2 > 0.0 ? -P.head<2>().dot(D.head<2>()) / length2 : t_low;
+  Nearest nearest = exactly(tangent(piece, P, D, std::clamp(t, t_low, t_high)));
+  nearest.floor -= std::abs(D.z());
+  return nearest;
+}
+
 struct Bracket {
   Tangent low, high;  ///< low.slope < 0 < high.slope
   double width() const { return high.t - low.t; }
@@ -46,6 +57,7 @@ struct Bracket {
 
 Nearest nearest_instant(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double t_low,
                         double t_high, double gap_mm) {
+  if (std::abs(D.z()) <= gap_mm) return nearest_across(piece, P, D, t_low, t_high);
   Bracket bracket{tangent(piece, P, D, t_low), {}};
   if (bracket.low.slope >= 0.0) return exactly(bracket.low);
   bracket.high = tangent(piece, P, D, t_high);
