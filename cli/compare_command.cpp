@@ -34,8 +34,10 @@ struct CompareOptions {
 constexpr double kExcessUm = 10.0, kGougeUm = 1.0;  // without a scene that says otherwise
 /// Where no pitch is given: samples along the diagonal of the smaller of the two boxes, and over both
 /// surfaces.
-constexpr double kSamplesAcross = 400.0;
-constexpr double kSamples = 250'000.0;
+constexpr double kSamplesAcross = 250.0;
+constexpr double kSamples = 100'000.0;
+/// Needles need more, for the proof of long cells beside many others is slow: so many a facet and in all.
+constexpr double kSamplesOfFacet = 10.0, kMostNeedleSamples = 400'000.0;
 /// Over both surfaces, with a pitch that is given: some three gigabytes and a minute of processor time.
 constexpr double kMostSamples = 2e7;
 /// Facets of parametric surfaces, mm: curvature makes them smaller where it must.
@@ -70,7 +72,8 @@ double default_pitch(const mesh::SignedDistance& stock, const mesh::SignedDistan
       std::min(mesh::bounds(stock.mesh()).size().norm(), mesh::bounds(design.mesh()).size().norm()) /
       kSamplesAcross;
   const auto allowed = [&](const mesh::SignedDistance& mesh) {
-    return std::max(kSamples, static_cast<double>(mesh.mesh().triangles.size()));
+    const auto facets = static_cast<double>(mesh.mesh().triangles.size());
+    return std::max({kSamples, facets, std::min(kSamplesOfFacet * facets, kMostNeedleSamples)});
   };
   while (cells_at(stock, pitch) > allowed(stock) || cells_at(design, pitch) > allowed(design))
     pitch *= kCoarser;
@@ -100,6 +103,7 @@ measure::ComparisonInput comparison_of(const CompareOptions& options, const Comp
   input.pitch = options.pitch_mm ? given_pitch(*options.pitch_mm, *stock.mesh, *design.mesh)
                                  : default_pitch(*stock.mesh, *design.mesh);
   input.design_error = design.error_mm;
+  input.design_errors = design.errors;
   input.faces = design.faces.get();
   if (!design.grid) input.stock_error = stock.error;  // two grids are compared as they are
   input.stock_edge = stock.edge;
@@ -239,8 +243,8 @@ void add_limits(CLI::App& command, CompareOptions& options) {
 void add_sampling(CLI::App& command, CompareOptions& options) {
   command
       .add_option("--pitch-mm", options.pitch_mm,
-                  "every point lies so near to a sample, before the proof divides further (default: 1/400 of "
-                  "the smaller diagonal, or some 250 000 samples a surface)")
+                  "every point lies so near to a sample, before the proof divides further (default: 1/250 of "
+                  "the smaller diagonal, or some 100 000 samples a surface)")
       ->check(positive());
   command
       .add_option("--edge-mm", options.edge_mm,

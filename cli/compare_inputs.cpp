@@ -8,7 +8,11 @@
 #include <filesystem>
 
 #include "base/angles.h"
+#include "base/check.h"
+#include "brep/facet_strays.h"
 #include "brep/model.h"
+#include "brep/refine_facets.h"
+#include "mesh/mesh_check.h"
 #include "mesh/mesh_crossing.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
@@ -30,8 +34,11 @@ constexpr double kSharp = 0.5235987755982988;
 /// Facets of parametric surfaces stay this close to them, mm, unless that takes more than kMostFacets.
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
-/// Of CAD files, mm: samples are taken on the faces, and what is proven between them on the facets.
-constexpr double kCadChord = 5e-3;
+/// Of CAD files, mm: so close the library keeps its facets, and so close they are divided, to so many.
+constexpr double kCadChord = 5e-3, kFineChord = 2e-4;
+constexpr size_t kFineFacets = 1'200'000;
+/// Samples are taken on facets as fine as this, mm; on the faces over coarser ones, which takes far longer.
+constexpr double kMeasuredOnFacets = 5e-4;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 
@@ -121,14 +128,35 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
   }
 }
 
+/// Of the facets that a distance has kept: with equal positions as one, those without area are left out.
+std::vector<double> kept_facets_of(const TriMesh& mesh, const std::vector<double>& strays,
+                                   const mesh::SignedDistance& distance) {
+  const mesh::WeldedMesh welded = mesh::weld(mesh);
+  std::vector<double> kept;
+  for (size_t t = 0; t < welded.triangles.size(); ++t) {
+    const auto& [a, b, c] = welded.triangles[t];
+    const Vec3 &p = welded.points[a], &q = welded.points[b], &r = welded.points[c];
+    if ((q - p).cross(r - p).squaredNorm() > 0.0) kept.push_back(strays[welded.sources[t]]);
+  }
+  SWARF_CHECK(kept.size() == distance.mesh().triangles.size(), "errors of the facets of a distance");
+  return kept;
+}
+
 /// Closed facets with the surfaces that they stand for, null: they are the design.
 ComparedDesign design_of_facets(const TriMesh& mesh, const surface::UnderFacetsPtr& under,
                                 const std::string& file, const std::string& name) {
   ComparedDesign design;
   design.mesh = checked_mesh(mesh, file, name);
   if (under == nullptr) return design;
-  design.error_mm = under->chord_mm;
-  design.faces = std::make_shared<stock::DesignMesh>(mesh, under);
+  const brep::RefinedFacets fine = brep::refine(mesh, *under, kFineChord, kFineFacets);
+  const auto fine_under = std::make_shared<surface::UnderFacets>(fine.under);
+  const auto fine_mesh = std::make_shared<mesh::SignedDistance>(fine.mesh);
+  const std::vector<double> strays = brep::facet_strays(fine.mesh, fine.under, kFineChord);
+  design.mesh = fine_mesh;
+  design.errors = kept_facets_of(fine.mesh, strays, *design.mesh);
+  design.error_mm = *std::max_element(design.errors.begin(), design.errors.end());
+  if (design.error_mm > kMeasuredOnFacets)
+    design.faces = std::make_shared<stock::DesignMesh>(fine.mesh, fine_under);
   return design;
 }
 

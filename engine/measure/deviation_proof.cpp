@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "measure/deviation_side.h"
+#include "measure/piece_bounds.h"
 
 namespace swarf::measure {
 namespace {
@@ -21,17 +22,19 @@ constexpr int kBeamHalvings = 40;
 
 /// A place inside a cell that is no worse than its centroid by this is not kept, mm.
 constexpr double kWorse = 1e-9;
+/// Bounds below this are rounding of doubles, mm.
+constexpr double kRounding = 1e-11;
 
 using Pair = std::array<double, 2>;  ///< excess, gouge
 
 /// A part of a cell.
 struct Piece {
-  Corners corners;
-  DeviationSample sample;  ///< at its centroid
+  FlatPiece corners;
+  DeviationSample sample;  ///< at its centre
 };
 
-Piece piece_of(const DeviationSide& side, uint32_t triangle, const Corners& corners, const Piece& from) {
-  return {corners, side.look(triangle, centroid_of(corners), &from.sample)};
+Piece piece_of(const DeviationSide& side, uint32_t triangle, const FlatPiece& corners, const Piece& from) {
+  return {corners, side.look(triangle, corners.centre(), &from.sample)};
 }
 
 /// What is proven of one cell.
@@ -54,62 +57,88 @@ class Prover {
   CellProof prove(uint32_t cell) const {
     CellProof proof;
     const uint32_t triangle = sampled_.cells[cell].triangle;
-    std::vector<Piece> pieces{{sampled_.cells.corners(cell), sampled_.samples[cell]}};
+    std::vector<Piece> pieces{{FlatPiece(sampled_.cells.corners(cell)), sampled_.samples[cell]}};
     while (!pieces.empty()) {
       const Piece piece = pieces.back();
       pieces.pop_back();
-      note_sample(piece, proof);
-      if (settles(triangle, piece, proof)) continue;
-      for (const Corners& half : halves_of(piece.corners))
-        pieces.push_back(piece_of(sampled_.side, triangle, half, piece));
+      if (piece.sample.state != CellState::kMeasured) continue;
+      note_value(piece.sample, piece.corners.centre(), proof);
+      PieceBounds bounds(sampled_.side, triangle, piece.corners, piece.sample);
+      if (settles(triangle, piece, bounds, proof)) continue;
+      for (const FlatPiece& part : bounds.parts())
+        pieces.push_back(piece_of(sampled_.side, triangle, part, piece));
       proof.samples += 2;
     }
     return proof;
   }
 
  private:
-  static void note_sample(const Piece& piece, CellProof& proof) {
+  static void note_value(const DeviationSample& sample, const Vec3& place, CellProof& proof) {
     for (size_t k = 0; k < 2; ++k) {
-      const double value = counted_of(piece.sample, k == 1);
+      const double value = counted_of(sample, k == 1);
       if (value <= proof.value[k]) continue;
       proof.value[k] = value;
-      proof.place[k] = centroid_of(piece.corners);
+      proof.place[k] = place;
     }
   }
 
-  /// The deviation that counts over a piece is at most this, without and with the errors of grid and facets.
-  double counted_bound(const Piece& piece, const DistanceRange& range, size_t k) const {
-    if (k == 0 && piece.sample.inside > radius_of(piece.corners)) return 0.0;
-    const double most = k == 0 ? range.high : -range.low;
-    return std::max(0.0, piece.sample.edge ? most - input_.edge : most);
+  /// All of the piece lies so near to a rounded edge that the grid answers for it.
+  bool is_rounded_off(uint32_t triangle, const Piece& piece, double most) const {
+    if (!piece.sample.edge) return false;
+    const DeviationSide& side = sampled_.side;
+    if (!side.on_design()) return most <= input_.edge + side.own_error(triangle);
+    const uint32_t facet = piece.sample.facet;
+    const double away = side.opposite().distance_over(facet, piece.corners.moved(side.shift(triangle)));
+    return away <= input_.edge + side.opposite().error(facet);
   }
 
-  bool settles(uint32_t triangle, const Piece& piece, CellProof& proof) const {
-    if (piece.sample.state != CellState::kMeasured) return true;
-    for (const bool thorough : {false, true}) {
-      const DistanceRange range = sampled_.side.range_over(triangle, piece.corners, piece.sample, thorough);
-      bool settled = true;
-      for (size_t k = 0; k < 2; ++k) {
-        const double bound = counted_bound(piece, range, k);
-        settled = settled && (bound + piece.sample.error <= target_[k] ||
-                              bound - counted_of(piece.sample, k == 1) <= gap_[k]);
-      }
-      const bool last = thorough && proof.samples >= work_;
-      if (!settled && !last) continue;
-      proof.whole = proof.whole && settled;
-      note_bound(piece, range, proof);
+  /// The deviation that counts over a piece is at most this, errors of grid and facets included.
+  double counted_bound(uint32_t triangle, const Piece& piece, double most) const {
+    return most <= kRounding || is_rounded_off(triangle, piece, most) ? 0.0 : most;
+  }
+
+  Pair counted_bounds(uint32_t triangle, const Piece& piece, const PieceBounds& bounds) const {
+    const DistanceRange deviation = bounds.deviation();
+    const bool no_surface = piece.sample.inside > piece.corners.radius();
+    return {no_surface ? 0.0 : counted_bound(triangle, piece, deviation.high),
+            counted_bound(triangle, piece, -deviation.low)};
+  }
+
+  /// Each sign meets its target, or is as tight as it can be.
+  bool meets(const Pair& bound, const Pair& value, double error) const {
+    for (size_t k = 0; k < 2; ++k) {
+      if (bound[k] > target_[k] && bound[k] - value[k] > gap_[k] + error) return false;
+    }
+    return true;
+  }
+
+  bool settles(uint32_t triangle, const Piece& piece, PieceBounds& bounds, CellProof& proof) const {
+    Pair value{counted_of(piece.sample, false), counted_of(piece.sample, true)}, bound{};
+    for (const PieceBounds::Step step : PieceBounds::kSteps) {
+      bounds.tighten(step);
+      bound = counted_bounds(triangle, piece, bounds);
+      if (!meets(bound, value, piece.sample.error)) continue;
+      note_bound(piece, bound, proof);
       return true;
     }
-    return false;
+    const Vec3 corner = bounds.farthest_corner();
+    const DeviationSample there = sampled_.side.look(triangle, corner, &piece.sample);
+    ++proof.samples;
+    note_value(there, corner, proof);
+    for (size_t k = 0; k < 2; ++k) value[k] = std::max(value[k], counted_of(there, k == 1));
+    const bool met = meets(bound, value, std::max(piece.sample.error, there.error));
+    if (!met && proof.samples < work_) return false;
+    proof.whole = proof.whole && met;
+    note_bound(piece, bound, proof);
+    return true;
   }
 
-  void note_bound(const Piece& piece, const DistanceRange& range, CellProof& proof) const {
+  static void note_bound(const Piece& piece, const Pair& bound, CellProof& proof) {
     proof.error = std::max(proof.error, piece.sample.error);
     for (size_t k = 0; k < 2; ++k) {
-      const double bound = counted_bound(piece, range, k) + piece.sample.error;
-      if (bound <= proof.bound[k]) continue;
-      proof.bound[k] = bound;
-      proof.bound_place[k] = centroid_of(piece.corners);
+      if (bound[k] <= proof.bound[k]) continue;
+      proof.bound[k] = bound[k];
+      proof.bound_place[k] = piece.corners.centre();
     }
   }
 
@@ -137,13 +166,13 @@ void climb(SampledSide& sampled, bool gouge) {
   std::vector<Rung> rungs;
   for (size_t i = 0; i < kept; ++i) {
     const uint32_t c = leaves[i].second;
-    rungs.push_back({-leaves[i].first, c, {sampled.cells.corners(c), sampled.samples[c]}});
+    rungs.push_back({-leaves[i].first, c, {FlatPiece(sampled.cells.corners(c)), sampled.samples[c]}});
   }
   for (int step = 0; step < kBeamHalvings; ++step) {
     std::vector<Rung> next;
     for (const Rung& rung : rungs) {
       const uint32_t triangle = sampled.cells[rung.cell].triangle;
-      for (const Corners& half : halves_of(rung.piece.corners)) {
+      for (const FlatPiece& half : halves_of(rung.piece.corners)) {
         const Piece piece = piece_of(sampled.side, triangle, half, rung.piece);
         next.push_back({counted_of(piece.sample, gouge), rung.cell, piece});
       }
@@ -154,7 +183,7 @@ void climb(SampledSide& sampled, bool gouge) {
     if (rungs.empty()) return;
     if (rungs.front().value > sampled.worst(rungs.front().cell, gouge)) {
       sampled.findings[gouge ? 1 : 0][rungs.front().cell] = {rungs.front().value,
-                                                             centroid_of(rungs.front().piece.corners)};
+                                                             rungs.front().piece.corners.centre()};
     }
   }
 }
