@@ -52,6 +52,12 @@ void set_limits(const CompareOptions& options, const ComparedDesign& design,
       excess = design.accept->excess_max_um ? design.accept->excess_max_um : design.accept->scallop_max_um;
     if (!gouge) gouge = design.accept->gouge_max_um;
   }
+  for (const auto& [limit, option] : {std::pair{excess, "--excess-um"}, {gouge, "--gouge-um"}}) {
+    if (!limit || *limit > 0.0) continue;
+    throw InputError("limit-of-zero", {option},
+                     "a limit of 0 um cannot be proven: coordinates of meshes are rounded",
+                     "give what the part may be off, such as 0.1");
+  }
   input.excess = excess.value_or(kExcessUm) * kMicrometre;
   input.gouge = gouge.value_or(kGougeUm) * kMicrometre;
 }
@@ -160,10 +166,12 @@ int compare_solids(const CompareOptions& options) {
   const measure::ComparisonInput input = comparison_of(options, stock, design);
   const measure::PartComparison result = measure::compare_parts(input);
   check_measured(options, result);
-  const std::vector<sim::Check> checks = judge_comparison(input, result);
-  const std::string json = comparison_json(stock, design, input, result, checks, aligned);
-  reports::ComparedPair pair{
-      options.stock, options.design, design.grid, "", checks, comparison_rows(stock, design, input, result)};
+  const ComparedPieces pieces = pieces_between(stock, design);
+  const std::vector<sim::Check> checks = judge_comparison(input, result, pieces);
+  const std::string json = comparison_json(stock, design, input, result, checks, aligned, pieces);
+  reports::ComparedPair pair{options.stock, options.design,
+                             design.grid,   "",
+                             checks,        comparison_rows(stock, design, input, result, pieces)};
   if (aligned) pair.alignment = alignment_text(*aligned);
   pair.command = shell_text(compare_words(options));
   if (!options.output.empty())
@@ -207,8 +215,10 @@ Input
   Meshes must be closed, manifold, turned outward and free of crossings, in mm; anything else is refused.
   A scene's [accept] gives the limits (excess_max_um, else scallop_max_um; gouge_max_um). Parametric
   designs are open patches: what of the stock lies beyond them is not compared, and stated in mm2.
-  A .vdb is as good as its grid: the error is added to the bound, and at sharp edges, which a grid rounds,
-  one voxel (--edge-mm) is taken off. The run itself measures far below the voxel size.
+  A .vdb is as good as its grid: the error is added to the bound. At sharp edges, which a grid rounds, one
+  voxel (--edge-mm) is put down to the grid; more counts wholly. The run itself measures far below the
+  voxel size. A stock that is in more pieces than the design is a finding, with the place of the loose ones.
+  Limits are above 0.
 
   Against an earlier .vdb what stands out was added and what is missing removed; the errors of the two
   grids are stated, not added.

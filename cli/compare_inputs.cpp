@@ -35,10 +35,10 @@ constexpr double kSharp = 0.5235987755982988;
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
 /// Of CAD files, mm: so close the library keeps its facets, and so close they are divided, to so many.
-constexpr double kCadChord = 5e-3, kFineChord = 2e-4;
+constexpr double kCadChord = 5e-3, kFineChord = 3e-4;
 constexpr size_t kFineFacets = 1'200'000;
 /// Samples are taken on facets as fine as this, mm; on the faces over coarser ones, which takes far longer.
-constexpr double kMeasuredOnFacets = 5e-4;
+constexpr double kMeasuredOnFacets = 1e-3;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 
@@ -151,7 +151,7 @@ ComparedDesign design_of_facets(const TriMesh& mesh, const surface::UnderFacetsP
   const brep::RefinedFacets fine = brep::refine(mesh, *under, kFineChord, kFineFacets);
   const auto fine_under = std::make_shared<surface::UnderFacets>(fine.under);
   const auto fine_mesh = std::make_shared<mesh::SignedDistance>(fine.mesh);
-  const std::vector<double> strays = brep::facet_strays(fine.mesh, fine.under, kFineChord);
+  const std::vector<double> strays = brep::facet_strays(fine.mesh, fine.under, 2.0 * kFineChord);
   design.mesh = fine_mesh;
   design.errors = kept_facets_of(fine.mesh, strays, *design.mesh);
   design.error_mm = *std::max_element(design.errors.begin(), design.errors.end());
