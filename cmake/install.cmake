@@ -13,7 +13,8 @@ if(TARGET swarf_mpi)
 endif()
 install(DIRECTORY assets/machines assets/posts assets/programs assets/schemas DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets" COMPONENT program
   PATTERN "*.py" EXCLUDE)
-install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program PATTERN "*.py" EXCLUDE)
+install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf" COMPONENT program
+  PATTERN "*.py" EXCLUDE PATTERN "generator" EXCLUDE)
 install(PROGRAMS assets/cluster/batch_array.sh DESTINATION "${CMAKE_INSTALL_DATADIR}/swarf/assets/cluster" COMPONENT program)
 install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 
@@ -27,7 +28,7 @@ install(FILES "${PROJECT_BINARY_DIR}/manual.man" DESTINATION "${CMAKE_INSTALL_MA
 install(FILES "${PROJECT_BINARY_DIR}/manual.bash"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME swarf COMPONENT program)
 
-foreach(module base mesh surface brep cutter position kinematics program toolpath flank motion machine post stock collision measure sim avoidance papers render
+foreach(module base mesh surface brep cutter position kinematics program toolpath flank motion machine post stock collision measure proof sim avoidance papers render
                reports)
   set_target_properties(swarf_${module} PROPERTIES EXPORT_NAME ${module})
   list(APPEND libraries swarf_${module})

@@ -144,6 +144,19 @@ toml::table* table_to_set(toml::table& table, const std::string& name) {
   return array == nullptr || index >= array->size() ? nullptr : array->get(index)->as_table();
 }
 
+/// The value of an override: as in a file, a number without a digit before its point, or a bare word.
+toml::table parse_override(const std::string& value) {
+  try {
+    return toml::parse(fmt::format("value = {}", value));
+  } catch (const toml::parse_error&) {
+    double number = 0.0;
+    const char* const end = value.data() + value.size();
+    const auto [stop, failure] = std::from_chars(value.data(), end, number);
+    if (failure == std::errc() && stop == end) return toml::table{{"value", number}};
+    return toml::table{{"value", value}};
+  }
+}
+
 /// The last override of a key wins, whatever stood in the file, in mm or in inches.
 void apply_override(toml::table& root, const std::string& text, Diagnostics& diagnostics) {
   const auto equals = text.find('=');
@@ -152,13 +165,7 @@ void apply_override(toml::table& root, const std::string& text, Diagnostics& dia
                       "write for example --set stock.voxel_mm=0.1");
     return;
   }
-  const std::string value = text.substr(equals + 1);
-  toml::table parsed;
-  try {
-    parsed = toml::parse(fmt::format("value = {}", value));
-  } catch (const toml::parse_error&) {
-    parsed.insert_or_assign("value", value);  // a bare word is meant as a string
-  }
+  const toml::table parsed = parse_override(text.substr(equals + 1));
   toml::table* table = &root;
   std::string path = text.substr(0, equals);
   for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {

@@ -1,21 +1,23 @@
-// Facets of a CAD file divided where they stray too far from their faces.
+// Finer facets of a shape that is tessellated, by its surfaces and edges alone: sides are halved on the curve
+// or the surface that they stand for. The library behind tessellate() takes many times as long for as fine a
+// mesh.
 #pragma once
 
-#include "mesh/tri_mesh.h"
-#include "surface/under_facets.h"
+#include <vector>
+
+#include "brep/model.h"
 
 namespace swarf::brep {
 
-struct RefinedFacets {
-  TriMesh mesh;  ///< equal positions are one vertex
-  surface::UnderFacets under;
+struct FineFacets {
+  TriMesh mesh;  ///< welded
+  double chord_mm =
+      0.0;  ///< no face strays farther from its facets, proven by the bends; edges at their quarters
+  std::vector<double> chords_mm;  ///< the same of each triangle: planes are exact but beside curved edges
 };
 
-/// Halves the sides of curved facets whose middles stray from their surface by more than `chord_mm`, and
-/// both facets beside such a side, until there are none or there would be more than `most_facets`. Sides
-/// that stand for an edge which is no straight line in the parameters stay whole. The library makes six
-/// times as many facets for the same chord, for it also divides along a cylinder.
-RefinedFacets refine(const TriMesh& mesh, const surface::UnderFacets& under, double chord_mm,
-                     size_t most_facets);
+/// Sides that stray by more than `chord_mm` are halved until none does. `most`: of triangles; with more, or
+/// where facets have no surface (across creases), the mesh is empty.
+FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most);
 
 }  // namespace swarf::brep

@@ -15,12 +15,14 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/check.h"
+#include "brep/facet_chord.h"
 #include "brep/facet_estimate.h"
-#include "brep/facet_strays.h"
 #include "brep/occt_shape.h"
+#include "brep/straight_lines.h"
 #include "surface/nurbs.h"
 
 namespace swarf::brep {
@@ -29,7 +31,8 @@ namespace {
 struct Made {
   std::vector<Vec3> points;
   std::vector<std::array<uint32_t, 3>> triangles;
-  double chord_mm = 0.0;
+  double chord_mm = 0.0;   ///< from each place of a facet to the place of the face with its parameters
+  double strays_mm = 0.0;  ///< from a facet to its face
   bool proven = true;
   surface::UnderFacets under;
   double edge_mm = 0.0;
@@ -190,13 +193,12 @@ void take_sides(const EdgeSides& sides, const std::array<int, 3>& nodes, const M
 }
 
 /// Facets of one face; vertices with the same place become one by weld().
-void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
+void add_facets(const TopoDS_Face& face, const MeshedFace& meshed, double enough_mm, Made& made) {
   TopLoc_Location at;
   const Handle(Poly_Triangulation) facets = BRep_Tool::Triangulation(face, at);
   if (facets.IsNull())
     throw InputError("cad-surface", {}, "a face could not be divided into facets", "export the part again");
   const auto first = static_cast<uint32_t>(made.points.size());
-  const MeshedFace meshed = meshed_face(face);
   made.proven = made.proven && !meshed.creased() && facets->HasUVNodes();
   const auto first_part = static_cast<int>(made.under.surfaces.size());
   for (const surface::NurbsPart& part : meshed.parts) {
@@ -212,6 +214,7 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
     places.emplace_back((Vec2(uv.X(), uv.Y()) - meshed.low).cwiseQuotient(meshed.high - meshed.low));
   }
   const EdgeSides sides = sides_on_edges(face, facets, at);
+  const std::optional<int> along = straight_lines(*meshed.whole);
   for (int i = 1; i <= facets->NbTriangles(); ++i) {
     int a, b, c;
     facets->Triangle(i).Get(a, b, c);
@@ -224,8 +227,13 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
       take_sides(sides, {a, b, c}, meshed, first_part, on, made);
       const std::array<Vec3, 3> facet{made.points[first + at_node(a)], made.points[first + at_node(b)],
                                       made.points[first + at_node(c)]};
-      if (!meshed.creased())
-        made.chord_mm = std::max(made.chord_mm, distance_bound(*meshed.whole, uv, facet, enough_mm, 0));
+      if (!meshed.creased()) {
+        const double chord = distance_bound(*meshed.whole, uv, facet, enough_mm, 0);
+        made.chord_mm = std::max(made.chord_mm, chord);
+        const double strays =
+            along && chord > enough_mm ? straight_bound(*meshed.whole, *along, uv, facet) : chord;
+        made.strays_mm = std::max(made.strays_mm, std::min(strays, chord));
+      }
     }
     made.across_creases += on.surface == surface::FacetOnSurface::kNone ? 1 : 0;
     made.under.facets.push_back(on);
@@ -234,23 +242,45 @@ void add_facets(const TopoDS_Face& face, double enough_mm, Made& made) {
   }
 }
 
-Made facets_of(const TopoDS_Shape& shape, double asked_mm, double edge_mm, double chord_mm,
-               bool closed_only) {
-  Made made;
+bool is_developable(const MeshedFace& face) {
+  return !face.creased() && (is_plane(*face.whole) || straight_lines(*face.whole));
+}
+
+/// Developable faces need no vertices within them: their facets run from edge to edge.
+enum class Which { kDevelopable, kOthers };
+
+/// Appends the facets of those faces; false: there are others.
+bool add_facets_of(const TopoDS_Shape& shape, Which which, double asked_mm, double edge_mm, double chord_mm,
+                   bool closed_only, Made& made) {
   BRepTools::Clean(shape);
   constexpr double kMostAngle = 0.35;  // rad between neighbours: nothing but looks hangs on it
   IMeshTools_Parameters asked;
   asked.Deflection = std::min(asked_mm, edge_mm);  // of edges
   asked.DeflectionInterior = asked_mm;
   asked.Angle = asked.AngleInterior = kMostAngle;
+  asked.InternalVerticesMode = asked.ControlSurfaceDeflection = which == Which::kOthers;
   const BRepMesh_IncrementalMesh mesher(shape, asked);
+  bool all = true;
+  const auto add = [&](const TopoDS_Shape& of) {
+    for (TopExp_Explorer it(of, TopAbs_FACE); it.More(); it.Next()) {
+      const MeshedFace meshed = meshed_face(TopoDS::Face(it.Current()));
+      const bool wanted = is_developable(meshed) == (which == Which::kDevelopable);
+      if (wanted) add_facets(TopoDS::Face(it.Current()), meshed, chord_mm, made);
+      all = all && wanted;
+    }
+  };
   TopExp_Explorer body(shape, TopAbs_SOLID);
-  for (; closed_only && body.More(); body.Next()) {
-    for (TopExp_Explorer it(body.Current(), TopAbs_FACE); it.More(); it.Next())
-      add_facets(TopoDS::Face(it.Current()), chord_mm, made);
-  }
-  for (TopExp_Explorer it(shape, TopAbs_FACE); !closed_only && it.More(); it.Next())
-    add_facets(TopoDS::Face(it.Current()), chord_mm, made);
+  for (; closed_only && body.More(); body.Next()) add(body.Current());
+  if (!closed_only) add(shape);
+  return all;
+}
+
+/// The library divides edges the same whichever faces are divided after them.
+Made facets_of(const TopoDS_Shape& shape, double asked_mm, double edge_mm, double chord_mm,
+               bool closed_only) {
+  Made made;
+  if (!add_facets_of(shape, Which::kDevelopable, asked_mm, edge_mm, chord_mm, closed_only, made))
+    add_facets_of(shape, Which::kOthers, asked_mm, edge_mm, chord_mm, closed_only, made);
   return made;
 }
 
@@ -269,10 +299,10 @@ Facets tessellate(const Model& model, double chord_mm, bool closed_only, double 
       made = facets_of(model.shape->nurbs, asked, edge_mm, chord_mm, closed_only);
       // What does not come nearer by finer facets is a fault of the file, such as an edge beside its face.
       constexpr double kNoNearer = 0.95;
-      const bool is_stuck = made.chord_mm > kNoNearer * last_mm;
-      if (made.chord_mm <= chord_mm || is_stuck) break;
-      last_mm = made.chord_mm;
-      asked *= std::clamp(0.7 * chord_mm / made.chord_mm, 0.3, 0.9);
+      const bool is_stuck = made.strays_mm > kNoNearer * last_mm;
+      if (made.strays_mm <= chord_mm || is_stuck) break;
+      last_mm = made.strays_mm;
+      asked *= std::clamp(0.7 * chord_mm / made.strays_mm, 0.3, 0.9);
     }
   });
   Facets facets;

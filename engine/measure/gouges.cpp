@@ -15,6 +15,8 @@ constexpr size_t kRefined = 64;
 constexpr double kFirstStep = 0.5, kLastStep = 1e-3;
 /// The search stays this near to its ray; of the pitch.
 constexpr double kReach = 1.5;
+/// Of a depth: the design is no farther away than its own place.
+constexpr double kWithin = 1.001;
 
 struct GougeContext {
   const stock::SurfaceDexels& dexels;
@@ -46,8 +48,16 @@ class Surroundings {
   }
   const Vec3& place() const { return place_; }  ///< of the last depth
   const Vec3& normal() const { return normal_; }
-  /// As much of the last depth as its foot answers for.
-  double own(double depth) const { return field_.own_depth(place_, normal_, depth); }
+  /// As much of the last depth as its foot answers for, told as the distance to the design; 0 where nothing
+  /// is removed at that depth: along a column of one hole the sweep of another hole is met far below.
+  double own(double depth) {
+    const double own = field_.own_depth(place_, normal_, depth);
+    const Vec3 bottom = place_ - own * normal_;
+    if (own < depth && !height_.removes(bottom)) return 0.0;
+    return field_.design == nullptr
+               ? own
+               : std::min(own, field_.design->nearest(bottom, kWithin * own).distance_mm);
+  }
   uint32_t owner() const { return height_.owner(); }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stock/contact/convex_contact.h"
 #include "stock/rays/ray_height.h"
 
 namespace swarf::measure {
@@ -40,6 +41,11 @@ const stock::SweepMap& PassHeight::map_of(uint32_t sweep) {
 
 double PassHeight::height(const Vec3& point, const Vec3& normal, uint32_t sweep) {
   return std::min(kHigh, stock::ray_height(point, normal, map_of(sweep), cutters_[sweep]));
+}
+
+bool PassHeight::removes(const Vec3& point) {
+  constexpr double kRounding = 1e-6;  // mm
+  return stock::swept_contact(point, map_of(owner_), cutters_[owner_]).distance_mm <= kRounding;
 }
 
 double PassHeight::operator()(const Vec3& point, const Vec3& normal) {

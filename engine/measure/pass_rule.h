@@ -50,6 +50,8 @@ class PassHeight {
   /// mm; at most kHigh, which stands for "not under the cutter". Along a pass the height has one minimum near
   /// the sweep that owns the neighbouring ray; the owner is remembered for the next call.
   double operator()(const Vec3& point, const Vec3& normal);
+  /// Whether the owner's sweep removes the material at a point.
+  bool removes(const Vec3& point);
   uint32_t owner() const { return owner_; }
 
   static constexpr double kHigh = 1e6;

@@ -15,6 +15,7 @@
 #include "sim/job/driven_part.h"
 #include "sim/judge/findings.h"
 #include "sim/run/cycle_sweeps.h"
+#include "sim/run/design_rays.h"
 #include "sim/run/highest_place.h"
 #include "sim/run/missing_material.h"
 #include "sim/run/prove_part.h"
@@ -474,6 +475,7 @@ namespace {
 /// The memory of the run, told and refused where it is too much.
 void predict(const Job& job, const CutOptions& options, Progress& progress, Result& result) {
   MemoryPrediction& memory = result.memory;
+  result.main.mesh_rays = mesh_rays(job);
   memory = predict_memory(job, result.main, options.outputs, options.check_voxels ? 2 : 1);
   if (options.max_memory_mb > 0.0) memory.limit_mb = options.max_memory_mb;
   const int ranks = options.ranks != nullptr ? options.ranks->size() : 1;

@@ -204,10 +204,33 @@ bool orient_loops(std::vector<TrimLoop>& loops) {
   return nested;
 }
 
+namespace {
+
+/// A parallelogram over the whole square: |N| and S . N are the same everywhere.
+bool is_parallelogram(const Surface& surface) {
+  constexpr double kFlat = 1e-12;  // mm
+  const BendBounds b = surface.bend_bounds(Vec2::Zero(), Vec2::Ones());
+  return std::max({b.uu.most(), b.uv.most(), b.vv.most()}) <= kFlat;
+}
+
+FaceMeasure measure_parallelogram(const Surface& surface, const std::vector<TrimLoop>& loops) {
+  double share = 0.0;
+  for (TrimLoop loop : loops) {
+    for (Vec2& place : loop) place = place.cwiseMax(Vec2::Zero()).cwiseMin(Vec2::Ones());
+    share += 0.5 * twice_area(loop);
+  }
+  const Derivatives d = surface.derivatives(0.5, 0.5);
+  const Vec3 N = d.Su.cross(d.Sv);
+  return {share * N.norm(), share * surface.outward_sign() * d.S.dot(N) / 3.0};
+}
+
+}  // namespace
+
 FaceMeasure measure_face(const Face& face) {
   const std::vector<double> across = pieces_of(*face.surface, true), along = pieces_of(*face.surface, false);
   std::vector<TrimLoop> loops = face.loops;
   if (loops.empty()) loops.push_back(square());
+  if (is_parallelogram(*face.surface)) return measure_parallelogram(*face.surface, loops);
   FaceMeasure sum;
   for (const TrimLoop& loop : loops) {
     for (size_t i = 0; i < loop.size(); ++i)

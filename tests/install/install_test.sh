@@ -30,8 +30,8 @@ dpkg-deb -f packages/*.deb Depends | tee depends
 grep -q libosmesa6 depends && grep -q libopenvdb depends
 dpkg-deb -x packages/*.deb unpacked
 for made in $(cd moved/share/swarf/scenes && ls -d */); do
-  # Cases of one kind stand in one folder under names of their own.
-  ls "unpacked/usr/share/swarf/scenes/$made"*.toml >/dev/null 2>&1 || { echo "the package lacks $made"; exit 1; }
+  # Cases of one kind stand in one folder, under names or in folders of their own.
+  [ -n "$(find "unpacked/usr/share/swarf/scenes/$made" -name '*.toml' -print -quit)" ] || { echo "the package lacks $made"; exit 1; }
 done
 unpacked/usr/bin/swarf check unpacked/usr/share/swarf/scenes/spinner_axis_cross/scene.toml
 

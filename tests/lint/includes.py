@@ -25,6 +25,7 @@ ALLOWED = {
     "stock": {"base", "mesh", "surface", "cutter"},
     "collision": {"base", "mesh", "cutter", "kinematics", "machine", "motion", "stock"},
     "measure": {"base", "mesh", "surface", "cutter", "stock", "motion"},
+    "proof": {"base", "mesh", "cutter", "stock", "collision", "measure"},
 }
 ENGINE = set(ALLOWED) | {"sim", "avoidance", "papers"}
 ALLOWED["sim"] = ENGINE - {"sim", "avoidance", "papers", "post"}
@@ -42,6 +43,7 @@ HEAVY = {
     "OpenMesh": (r"OpenMesh/", ("engine/mesh/",)),
     "meshoptimizer": (r"meshoptimizer", ("engine/mesh/", "render/gltf/")),
     "Boost.Math": (r"boost/math", ("engine/base/",)),
+    "Boost.Geometry": (r"boost/geometry", ("engine/proof/solid_design.cpp",)),
     "toml++": (r"toml\+\+", ("engine/base/config.cpp",)),
     # One file each for what it is good at: nearest triangles of a mesh, and light.
     "Embree": (r"embree", ("engine/mesh/mesh_distance.cpp", "render/ray/")),

@@ -248,5 +248,33 @@ TEST(RawStockScene, AWallThinnerThanAVoxelIsTold) {
   fs::remove_all(folder);
 }
 
+/// A block 20 x 20 x 10 mm, its top at z = 0; its raw stock, a mesh, may hold a closed void 2.5 deep in it.
+TEST(RawStockScene, AVoidOfTheStockWithinTheDesignIsAGouge) {
+  for (const bool is_hollow : {false, true}) {
+    const fs::path folder = swarf::test::fresh_folder(is_hollow ? "raw_void" : "raw_solid");
+    swarf::mesh::save_mesh((folder / "part.stl").string(), swarf::test::block({-10, -10, -10}, {10, 10, 0}));
+    TriMesh raw = swarf::test::block({-10, -10, -10}, {10, 10, 1});
+    if (is_hollow) {
+      const TriMesh hole = swarf::test::block({-2, -2, -5}, {2, 2, -2.5});
+      const auto first = static_cast<uint32_t>(raw.positions.size());
+      raw.positions.insert(raw.positions.end(), hole.positions.begin(), hole.positions.end());
+      for (const auto& t : hole.triangles)
+        raw.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+    }
+    swarf::mesh::save_mesh((folder / "raw.stl").string(), raw);
+    write_text(folder / "face.ngc",
+               "G21 G17 G90 G94 G54\nT1 M6\nS8000 M3\nG0 X-30 Y0\nZ5\nG1 Z0 F2000\nX30\nG0 Z20\nM5\nM2\n");
+    write_text(folder / "scene.toml",
+               "nc = \"face.ngc\"\ndialect = \"linuxcnc\"\ntools = \"T1=30\"\n[setup]\nwork_origin_mm = "
+               "\"on_table\"\nwithout_length = \"tip\"\n[stock]\nvoxel_mm = 0.4\nmesh = \"raw.stl\"\n"
+               "[design]\nmesh = \"part.stl\"\n[accept]\ngouge_max_um = 2\nexcess_max_um = 10\n[movie]\n"
+               "seconds = 0\n");
+    const swarf::test::ProgramRun run = run_in(folder);
+    EXPECT_EQ(run.exit_code, is_hollow ? 1 : 0) << run.output;
+    const json metrics = metrics_of(folder);
+    EXPECT_NEAR(number(metrics, "surface.gouge_max_um"), is_hollow ? 5000.0 : 0.0, is_hollow ? 6.0 : 1.0);
+  }
+}
+
 }  // namespace
 }  // namespace raw_stock_scene_test

@@ -213,6 +213,7 @@ surface::SurfacePtr read_analytic(ConfigTable& table, const std::string& kind) {
 DesignSettings read_design(ConfigTable table, bool cl) {
   DesignSettings design;
   design.mesh_where = table.where();
+  design.pitch_given = table.has("pitch_mm");
   design.pitch_mm = table.number("pitch_mm", kAboveZero, design.pitch_mm);
   if (!cl) return design;
   // A file says what it is for.

@@ -31,6 +31,7 @@ struct DesignSettings {
   DesignKind kind = DesignKind::kProgram;
   std::string name = "program";  ///< as in the scene: "hyperboloid"
   double pitch_mm = 0.2;         ///< grid of measuring rays on the design; cusps are refined between them
+  bool pitch_given = false;      ///< false: of a body by its size (load_design)
   /// CL scenes: blocks are divided into sweeps that stay this close to their motion for the measuring rays.
   double sweep_tolerance_mm = 2e-5;
   std::string surface_file;            ///< kSurface

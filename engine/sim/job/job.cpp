@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "brep/model.h"
+#include "brep/refine_facets.h"
 #include "cutter/profile.h"
 #include "mesh/mesh_check.h"
 #include "mesh/mesh_io.h"
@@ -255,6 +256,22 @@ double edge_chord(const AcceptLimits& accept) {
   return std::clamp(kShare * *accept.gouge_max_um * kMicrometre, kLeast, brep::kEdgeChord);
 }
 
+/// Facets of a CAD file for the proof, a fifth of the least limit from the faces. None of free-form parts
+/// that would need too many of them: those are proven on their faces.
+ProofFacets proof_facets(const brep::Model& model, const brep::Facets& facets, const AcceptLimits& accept) {
+  constexpr double kShare = 0.2, kFinest = 2e-5, kCoarsest = 1e-3;
+  constexpr double kBaseChord = 0.05, kBaseEdge = 0.02;  // mm: of facets that are refined
+  constexpr size_t kMostFacets = 200'000;
+  const double gouge = accept.gouge_max_um.value_or(kGougeAllowed),
+               excess = accept.excess_max_um.value_or(kExcessAllowed);
+  const double chord = std::clamp(kShare * std::min(gouge, excess) * kMicrometre, kFinest, kCoarsest);
+  brep::FineFacets fine =
+      brep::refine_facets(brep::tessellate(model, kBaseChord, true, kBaseEdge), chord, kMostFacets);
+  if (fine.mesh.triangles.empty()) fine = brep::refine_facets(facets, chord, kMostFacets);
+  if (fine.mesh.triangles.empty()) return {};
+  return {std::make_shared<TriMesh>(std::move(fine.mesh)), fine.chord_mm};
+}
+
 /// Faces of a part that drives which do not meet: where the widest gap is, and how far the tool sinks into
 /// it.
 void tell_gaps(const brep::Model& model, const Scene& scene, Diagnostics& diagnostics) {
@@ -303,8 +320,10 @@ TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   if (facets.mesh.triangles.empty())
     throw InputError("cad-open", where, fmt::format("{} faces are sheets of no solid body", model.face_count),
                      "export the part as a solid");
+  job.proof = proof_facets(model, facets, job.scene.accept);
   const double edge_mm = edge_chord(job.scene.accept);
-  if (facets.under->edge_mm > edge_mm) facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
+  if (job.proof.mesh == nullptr && facets.under->edge_mm > edge_mm)
+    facets = brep::tessellate(model, design.chord_mm, true, edge_mm);
   diagnostics.note(
       "cad-read", where,
       fmt::format("{} bodies, {} faces; unit {} = {:g} mm; measured on the faces themselves, "
@@ -345,6 +364,20 @@ TriMesh load_design_mesh(const Job& job, Diagnostics& diagnostics) {
   return mesh;
 }
 
+/// Rays find what the proof decides: about so many of them over the whole design.
+double pitch_of(const TriMesh& mesh) {
+  constexpr double kRays = 20'000.0, kFinest = 0.2, kStep = 0.05;  // mm
+  double area = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](size_t k) {
+      const auto& p = mesh.positions[t[k]];
+      return Vec3(p[0], p[1], p[2]);
+    };
+    area += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+  }
+  return std::max(kFinest, kStep * std::round(std::sqrt(area / kRays) / kStep));
+}
+
 void load_design(Job& job, Diagnostics& diagnostics) {
   DesignSettings& design = job.scene.design;
   // The part that drives is the design.
@@ -375,7 +408,9 @@ void load_design(Job& job, Diagnostics& diagnostics) {
     if (!diagnostics.has_errors()) mesh::check_bodies(*mesh, design.mesh_file, diagnostics, "design mesh");
     constexpr double kNoCreases = kPi;  // one normal for each vertex
     if (mesh->normals.empty()) mesh::compute_vertex_normals(*mesh, kNoCreases);
+    if (!design.pitch_given && !job.scene.driven) design.pitch_mm = pitch_of(*mesh);
     job.design_mesh = std::move(mesh);
+    if (job.design_under == nullptr) job.proof = {job.design_mesh, 0.0};
   }
 }
 

@@ -58,6 +58,10 @@ struct StockSettings {
 
 /// Limits of the surface that are not given do not count; scenes of surface blocks have 10.5 and 1 by
 /// default. The counts hold for every job: above 0 only where the scene writes so.
+/// Of a gouge, and of leftover material, where [accept] has no limit of them, um: no finish and no facets are
+/// so coarse.
+inline constexpr double kGougeAllowed = 100.0, kExcessAllowed = 100.0;
+
 struct AcceptLimits {
   std::optional<double> scallop_max_um;
   std::optional<double> gouge_max_um;
@@ -162,6 +166,12 @@ struct FlankClearance {
 };
 
 /// Everything that a run needs, loaded and checked; nothing has been written yet.
+/// The design as a closed mesh that the proof of the part takes for it.
+struct ProofFacets {
+  std::shared_ptr<const TriMesh> mesh;  ///< null: the design is no body, or too large for so fine facets
+  double chord_mm = 0.0;                ///< the design's faces lie no farther from the facets; 0: they are it
+};
+
 struct Job {
   Scene scene;
   machine::MachineScene machine;
@@ -179,6 +189,7 @@ struct Job {
       driven_faces;  ///< of the CAD file that drives; its design_mesh are facets of them
   std::shared_ptr<const TriMesh> design_mesh;  ///< or a closed mesh with normals; null without one
   surface::UnderFacetsPtr design_under;        ///< of a CAD file: the faces over the facets of that mesh
+  ProofFacets proof;                           ///< the same body as the proof takes it
 
   /// In the order in which they cut; the stock begins with what they have left of the body in Scene::stock.
   std::vector<EarlierSetup> earlier;

@@ -2,14 +2,13 @@
 #pragma once
 
 #include "measure/metrics.h"
+#include "sim/job/scene.h"
 
 namespace swarf::sim {
 
 /// Of what the stock lacks where [accept] has no limit of gouges, um: facets of stock and design that stand
 /// for one round face lie so near to each other (brep::kEdgeChord on both sides).
 inline constexpr double kMissingAllowed = 10.0;
-/// Of a gouge, likewise, um: no finish and no facets are so coarse.
-inline constexpr double kGougeAllowed = 100.0;
 
 enum class UnlimitedGouge { kNone, kMissing, kCut };
 

@@ -4,13 +4,17 @@
 
 namespace swarf::sim {
 
-std::vector<stock::RayFieldPtr> design_rays(const Job& job) {
+stock::RayFieldPtr mesh_rays(const Job& job) {
+  if (!job.design_mesh) return nullptr;
+  return stock::rays_on_mesh(*job.design_mesh, job.scene.design.pitch_mm, stock::kCrease, job.design_under);
+}
+
+std::vector<stock::RayFieldPtr> design_rays(const Job& job, const stock::RayFieldPtr& made) {
   const double pitch = job.scene.design.pitch_mm;
   std::vector<stock::RayFieldPtr> fields;
   for (const surface::SurfacePtr& surface : job.design)
     fields.push_back(stock::rays_on_surface(surface, pitch));
-  if (job.design_mesh)
-    fields.push_back(stock::rays_on_mesh(*job.design_mesh, pitch, stock::kCrease, job.design_under));
+  if (job.design_mesh) fields.push_back(made ? made : mesh_rays(job));
   return fields;
 }
 

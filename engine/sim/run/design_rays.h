@@ -9,8 +9,12 @@
 
 namespace swarf::sim {
 
-/// One field per design surface, in their order, or one for the design mesh; none without a design.
-std::vector<stock::RayFieldPtr> design_rays(const Job& job);
+/// Those on the design's facets; null: the design is no mesh.
+stock::RayFieldPtr mesh_rays(const Job& job);
+
+/// One field per design surface, in their order, or one for the design mesh, `made` where that is not null;
+/// none without a design.
+std::vector<stock::RayFieldPtr> design_rays(const Job& job, const stock::RayFieldPtr& made = nullptr);
 
 /// Such fields in the uncut stock; each ray answers for the material up to where another face is nearer.
 std::vector<stock::SurfaceDexels> design_dexels(const Job& job,

@@ -117,16 +117,14 @@ struct RayCounts {
 };
 
 /// Of the design. Surfaces: counted eight times as coarse, where the chord may stray 64 times as far.
-/// Meshes: counted as they will be made, because the turns and borders of the facets ask for rays too; the
-/// denser walls beside them hold no material.
-RayCounts ray_counts(const Job& job) {
+/// Meshes: as they are made, because the turns and borders of the facets ask for rays too; the denser walls
+/// beside them hold no material.
+RayCounts ray_counts(const Job& job, const stock::RayFieldPtr& field) {
   constexpr double kCoarse = 8.0, kChord = 0.005;
   const double pitch = job.scene.design.pitch_mm;
   constexpr double kWall = 0.75;  // of a ray: point, normal, facet, its share of a tile
   RayCounts counts;
-  if (job.design_mesh) {
-    const stock::RayFieldPtr field =
-        stock::rays_on_mesh(*job.design_mesh, pitch, stock::kCrease, job.design_under);
+  if (field) {
     counts.rays = static_cast<double>(field->size()) + kWall * static_cast<double>(field->walls->size());
     counts.proof_bytes = measure::certify_bytes(*field);
   }
@@ -242,7 +240,7 @@ MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const 
   const auto ticks = static_cast<double>(path.cycles->size());
   const bool by_block = settings.cut_by == CutBy::kBlocks, planned_passes = settings.cut_by == CutBy::kPasses;
   const double sweeps = by_block ? static_cast<double>(path.path.elements.size()) : ticks;
-  const RayCounts measured = ray_counts(job);
+  const RayCounts measured = ray_counts(job, path.mesh_rays);
   const double rays = measured.rays;
   const bool compared = job.scene.compare_planners && planned_passes;
   // The longest, and beside it those that have about as many ticks as the path itself.

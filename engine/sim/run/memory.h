@@ -34,7 +34,8 @@ struct Outputs {
 /// leaves and triangles: both grow with the square of the voxel sizes' ratio. The rest follows from the sizes
 /// of what the run holds at the same time; memory.cpp states each constant with what it stands for.
 /// Of long programs every n-th sweep is cut.
-/// `stocks`: copies of the level set held at once (2 with --check).
+/// A design of facets needs its rays in `path.mesh_rays`. `stocks`: copies of the level set held at once (2
+/// with --check).
 MemoryPrediction predict_memory(const Job& job, const MeasuredPath& path, const Outputs& outputs, int stocks);
 
 /// Throws InputError "out-of-memory" with a voxel size that fits when the prediction exceeds its limit.

@@ -71,7 +71,7 @@ void cut_ray_share(const Job& job, MeasuredPath& measured, Share share, const st
     measured.rays = with_carried(std::move(own), *measured.carried);
   }
   step();
-  const auto fields = same_design != nullptr ? same_rays(*same_design) : design_rays(job);
+  const auto fields = same_design != nullptr ? same_rays(*same_design) : design_rays(job, measured.mesh_rays);
   step();
   measured.dexels = design_dexels(job, fields);
   step();

@@ -46,6 +46,7 @@ struct MeasuredPath {
   /// What cut the measuring rays; Sweep::block is its index. Those of earlier set-ups stand behind the
   /// program's own and have no source.
   JobSweeps rays;
+  stock::RayFieldPtr mesh_rays;              ///< of a design of facets, once its memory was predicted
   std::vector<stock::SurfaceDexels> dexels;  ///< one per surface of Job::design, in its order
   std::optional<toolpath::NcReading> nc;     ///< of NC jobs
   std::vector<Diagnostic> warnings;          ///< of the program

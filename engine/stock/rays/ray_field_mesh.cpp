@@ -287,22 +287,37 @@ void share_areas(RayField& field, const RaysByPlace& near, const RaysOfFacets& l
   }
 }
 
-/// Rays that no third one stands between.
-void find_neighbours(const RayField& field, const RaysOfFacets& lists, uint32_t ray,
+/// How far apart neighbours are at most.
+double neighbour_reach(const RayField& field) {
+  return 2.0 * kFarthestRay * field.pitch_mm;
+}
+
+/// Rays that no third one stands between. `near`: within that reach.
+void find_neighbours(const RayField& field, const RaysByPlace& near, uint32_t ray,
                      std::vector<uint32_t>& around, std::vector<std::array<uint32_t, 2>>& edges) {
   constexpr double kBetween = 1.0 + 1e-6;  // the corners of a square stand between those of its diagonal
-  const double reach = 2.0 * kFarthestRay * field.pitch_mm;
+  const double reach = neighbour_reach(field);
   const Vec3& foot = field.points[ray];
   around.clear();
-  field.sheets->each_near(field.facet_of[ray], foot, reach, [&](uint32_t facet) {
-    for (uint32_t i = lists.begin[facet]; i < lists.begin[facet + 1]; ++i) {
-      const uint32_t other = lists.rays[i];
-      if (other != ray && (field.points[other] - foot).norm() <= reach &&
-          field.normals[other].dot(field.normals[ray]) > 0.0)
-        around.push_back(other);
-    }
-    return false;
+  near.each_near(foot, [&](uint32_t other) {
+    if (other != ray && (field.points[other] - foot).norm() <= reach &&
+        field.normals[other].dot(field.normals[ray]) > 0.0)
+      around.push_back(other);
   });
+  const uint32_t own = field.facet_of[ray];
+  const auto is_own = [&](uint32_t other) { return field.facet_of[other] == own; };
+  if (!std::all_of(around.begin(), around.end(), is_own)) {
+    // Only facets that hang together with the ray's own one nearby.
+    std::vector<uint32_t> facets;
+    field.sheets->each_near(own, foot, reach, [&](uint32_t facet) {
+      facets.push_back(facet);
+      return false;
+    });
+    std::sort(facets.begin(), facets.end());
+    std::erase_if(around, [&](uint32_t other) {
+      return !std::binary_search(facets.begin(), facets.end(), field.facet_of[other]);
+    });
+  }
   std::sort(around.begin(), around.end());
   for (const uint32_t other : around) {
     if (other < ray) continue;
@@ -315,12 +330,14 @@ void find_neighbours(const RayField& field, const RaysOfFacets& lists, uint32_t 
   }
 }
 
-void connect_rays(RayField& field, const RaysOfFacets& lists) {
+void connect_rays(RayField& field) {
+  RaysByPlace near(field, neighbour_reach(field));
+  for (uint32_t ray = 0; ray < field.size(); ++ray) near.add(ray);
   std::vector<std::vector<std::array<uint32_t, 2>>> parts((field.size() + kRaysPerTask - 1) / kRaysPerTask);
   parallel_chunks(field.size(), kRaysPerTask, [&](size_t begin, size_t end) {
     std::vector<uint32_t> around;
     for (size_t ray = begin; ray < end; ++ray)
-      find_neighbours(field, lists, static_cast<uint32_t>(ray), around, parts[begin / kRaysPerTask]);
+      find_neighbours(field, near, static_cast<uint32_t>(ray), around, parts[begin / kRaysPerTask]);
   });
   for (const auto& part : parts) field.edges.insert(field.edges.end(), part.begin(), part.end());
 }
@@ -388,7 +405,7 @@ RayFieldPtr rays_on_mesh(const TriMesh& mesh, double pitch_mm, double crease_rad
   placement.fill();
   const RaysOfFacets lists = rays_of_facets(*field);
   share_areas(*field, placement.near(), lists);
-  connect_rays(*field, lists);
+  connect_rays(*field);
   group_all(*field);
   field->walls = walls_on(field->sheets, pitch_mm, crease_rad);
   return field;

@@ -80,6 +80,13 @@ TEST(ConfigUnits, OnlyLengthsHaveInches) {
   EXPECT_EQ(others.diagnostics.list().size(), 2u);
 }
 
+TEST(ConfigOverrides, NumbersNeedNoDigitBeforeThePoint) {
+  Parsed given("", {"pitch_mm=.1", "low_mm=-.5", "name=.a"});
+  EXPECT_EQ(given.root.number("pitch_mm", kAboveZero), 0.1);
+  EXPECT_EQ(given.root.number("low_mm", {}), -0.5);
+  EXPECT_EQ(given.root.text("name"), ".a");
+}
+
 TEST(ConfigUnits, AnOverrideReplacesTheLengthInEitherUnit) {
   const std::string text = "[stock]\nvoxel_mm = 0.5\n";
   Parsed inches(text, {"stock.voxel_in=0.1"});

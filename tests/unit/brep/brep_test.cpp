@@ -25,12 +25,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "base/angles.h"
 #include "base/units.h"
 #include "brep/facet_estimate.h"
 #include "brep/model.h"
+#include "brep/refine_facets.h"
 #include "mesh/mesh_check.h"
 #include "surface/face.h"
 #include "surface/nurbs.h"
@@ -298,6 +300,50 @@ TEST_F(Cad, FacetsAreWatertightAndTheirChordIsProven) {
     EXPECT_EQ(
         mesh::check_closed(tessellate(read_step(step(BRepPrimAPI_MakeTorus(20, 5).Shape())), chord).mesh),
         "");
+  }
+}
+
+/// How far a point lies from the side of a cone from (radius, z = 0) to (top, height); a cylinder is one.
+double off_cone(const Vec3& p, double radius, double top, double height) {
+  const double tilt = std::atan2(radius - top, height);
+  return std::abs((std::hypot(p.x(), p.y()) - radius) * std::cos(tilt) + p.z() * std::sin(tilt));
+}
+
+TEST_F(Cad, FineFacetsOfRoundBodiesLieAsNearAsTold) {
+  constexpr double kChord = 4e-4, kRadius = 5.0, kHeight = 20.0;
+  const auto radial = [](double top) {
+    return [top](const Vec3& p) {
+      return std::min({off_cone(p, kRadius, top, kHeight), std::abs(p.z()), std::abs(p.z() - kHeight)});
+    };
+  };
+  struct Case {
+    TopoDS_Shape shape;
+    std::function<double(const Vec3&)> off;
+    size_t most;  ///< facets
+  };
+  // From rim to rim there are no rows; pi / acos(1 - chord / radius) = 249 sides suffice.
+  const std::vector<Case> cases{{BRepPrimAPI_MakeCylinder(kRadius, kHeight).Shape(), radial(kRadius), 2600},
+                                {BRepPrimAPI_MakeCone(kRadius, 2, kHeight).Shape(), radial(2.0), 2600},
+                                {BRepPrimAPI_MakeCone(kRadius, 0, kHeight).Shape(), radial(0.0), 2600},
+                                {BRepPrimAPI_MakeSphere(kRadius).Shape(),
+                                 [](const Vec3& p) { return std::abs(p.norm() - kRadius); }, 200000}};
+  for (const Case& one : cases) {
+    const FineFacets fine =
+        refine_facets(tessellate(read_step(step(one.shape)), 0.05, true, 0.02), kChord, 200000);
+    ASSERT_FALSE(fine.mesh.triangles.empty());
+    EXPECT_EQ(mesh::check_closed(fine.mesh), "");
+    EXPECT_LE(fine.mesh.triangles.size(), one.most);
+    EXPECT_LE(fine.chord_mm, 3.0 * kChord);  // radii differ by 2.5
+    for (const auto& t : fine.mesh.triangles) {
+      for (const auto& share : {Vec3(1, 1, 1), Vec3(0, 1, 1), Vec3(1, 0, 1), Vec3(1, 1, 0), Vec3(4, 1, 1)}) {
+        Vec3 p = Vec3::Zero();
+        for (size_t k = 0; k < 3; ++k) {
+          const auto& at = fine.mesh.positions[t[k]];
+          p += share[static_cast<Eigen::Index>(k)] / share.sum() * Vec3(at[0], at[1], at[2]);
+        }
+        ASSERT_LE(one.off(p), fine.chord_mm) << p.transpose();
+      }
+    }
   }
 }
 

@@ -1,11 +1,17 @@
-#include "brep/facet_strays.h"
+#include "brep/facet_chord.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
-
 namespace swarf::brep {
+
+double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double length2 = way.squaredNorm();
+  const double along = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - along * way).norm();
+}
+
 namespace {
 
 /// How far the surface lies from a flat facet between places x_k of it: by Taylor's formula at the corners
@@ -40,13 +46,6 @@ double to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
 
 }  // namespace
 
-double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 way = b - a;
-  const double length2 = way.squaredNorm();
-  const double along = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - along * way).norm();
-}
-
 double distance_bound(const surface::Surface& surface, const std::array<Vec2, 3>& x,
                       const std::array<Vec3, 3>& facet, double enough, int depth) {
   const double flat = flatness(surface, x);
@@ -63,31 +62,6 @@ double distance_bound(const surface::Surface& surface, const std::array<Vec2, 3>
        {std::array<Vec2, 3>{x[0], a, c}, {a, x[1], b}, {c, b, x[2]}, {a, b, c}})
     most = std::max(most, distance_bound(surface, part, facet, enough, depth + 1));
   return most;
-}
-
-std::vector<double> facet_strays(const TriMesh& mesh, const surface::UnderFacets& under, double enough_mm) {
-  constexpr size_t kChunk = 1024;
-  constexpr double kFloatStep = 0x1.0p-24 * 1.7320508;  // half a step in each of three coordinates
-  const auto place = [&](uint32_t v) {
-    const auto& p = mesh.positions[v];
-    return Vec3(p[0], p[1], p[2]);
-  };
-  std::vector<double> strays(mesh.triangles.size(), under.chord_mm);
-  parallel_chunks(mesh.triangles.size(), kChunk, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const surface::FacetOnSurface& on = under.facets[i];
-      if (on.surface == surface::FacetOnSurface::kNone) continue;
-      const auto& t = mesh.triangles[i];
-      const std::array<Vec3, 3> corners{place(t[0]), place(t[1]), place(t[2])};
-      double stray = 0.0, farthest = 0.0;
-      for (const Vec3& p : corners) farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
-      if (under.is_curved(static_cast<uint32_t>(i)))
-        stray = distance_bound(*under.surfaces[static_cast<size_t>(on.surface)], on.uv, corners, enough_mm);
-      const double beside = *std::max_element(on.chords_mm.begin(), on.chords_mm.end());
-      strays[i] = std::max(stray, beside) + kFloatStep * farthest;
-    }
-  });
-  return strays;
 }
 
 }  // namespace swarf::brep
