@@ -35,8 +35,9 @@ constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
 /// Of CAD files, mm: so close the library keeps facets and edges that are divided further, so close they are
 /// divided, to so many; and so close it keeps those that cannot be divided.
-constexpr double kBaseChord = 0.05, kBaseEdge = 0.02, kFineChord = 3e-4, kCadChord = 5e-3;
-constexpr size_t kFineFacets = 1'200'000;
+constexpr double kBaseChord = 0.05, kBaseEdge = 0.02, kCadChord = 5e-3;
+constexpr std::array kFineChords{3e-4, 1e-3, 2e-3, 4e-3};
+constexpr size_t kFineFacets = 500'000;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 
@@ -162,14 +163,29 @@ ComparedDesign design_of_cad(const brep::FineFacets& fine, const brep::Facets& f
   return design;
 }
 
+/// Divided as finely as the number of facets allows, which grows no faster than one over the chord. The mesh
+/// is empty where none can be divided.
+brep::FineFacets finest(const brep::Facets& facets) {
+  const double coarsest = kFineChords.back();
+  brep::FineFacets coarse = brep::refine_facets(facets, coarsest, kFineFacets);
+  const auto count = static_cast<double>(coarse.mesh.triangles.size());
+  for (const double chord : kFineChords) {
+    if (chord == coarsest || count == 0.0) break;
+    if (count * coarsest / chord > kFineFacets) continue;
+    brep::FineFacets fine = brep::refine_facets(facets, chord, kFineFacets);
+    if (!fine.mesh.triangles.empty()) return fine;
+  }
+  return coarse;
+}
+
 /// The closed solids of a CAD file.
 ComparedDesign design_of_cad(const std::string& file) {
   const brep::Model model = brep::read_cad(file);
   const brep::Facets coarse = brep::tessellate(model, kBaseChord, true, kBaseEdge);
-  const brep::FineFacets fine = brep::refine_facets(coarse, kFineChord, kFineFacets);
+  const brep::FineFacets fine = finest(coarse);
   if (!fine.mesh.triangles.empty()) return design_of_cad(fine, coarse, file);
   const brep::Facets facets = brep::tessellate(model, kCadChord, true);
-  return design_of_cad(brep::refine_facets(facets, kFineChord, kFineFacets), facets, file);
+  return design_of_cad(finest(facets), facets, file);
 }
 
 /// The design of a scene, which stands where the scene puts it.
@@ -180,7 +196,7 @@ ComparedDesign design_of_job(const sim::Job& job) {
   facets.mesh = *job.design_mesh;
   facets.under = job.design_under;
   facets.chord_mm = job.design_under->chord_mm;
-  return design_of_cad(brep::refine_facets(facets, kFineChord, kFineFacets), facets, file);
+  return design_of_cad(finest(facets), facets, file);
 }
 
 /// Files of CAD programs, which the reader of programs would otherwise take for blocks.

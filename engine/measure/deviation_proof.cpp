@@ -14,6 +14,10 @@ constexpr size_t kCellsPerTask = 64;
 constexpr uint32_t kFirstWork = 16;
 constexpr uint32_t kMostWork = 1U << 16U;
 constexpr uint32_t kAllWork = 1'000'000;
+/// And those of them that are to be bound nearly as close as what was found.
+constexpr uint32_t kCloseWork = 300'000;
+/// How close that is, of what was found, and at least, mm.
+constexpr double kCloseShare = 0.005, kCloseGap = 5e-4;
 /// A bound on what is beyond its limit anyhow need not be tighter than this share of it.
 constexpr double kFailedGap = 2e-3;
 /// Cells that the search for the greatest deviation follows, and how often it halves them.
@@ -199,18 +203,26 @@ double greatest(const SampledSide& sampled, bool gouge, Vec3& place, double so_f
   return most;
 }
 
-/// The targets and gaps that the first, and then the second attempt of the proof aims at.
+/// The attempts of the proof: of all cells, and what each leaves open is for the next.
+enum class Attempt {
+  kTight,   ///< to kProofGap
+  kClose,   ///< nearly as close, where that is much nearer than the limit
+  kLimits,  ///< to the limits
+};
+
+/// The targets and gaps that an attempt aims at.
 struct Aim {
   Pair target, gap;
 };
-Aim aim(const Pair& found, const ComparisonInput& input, bool second) {
+Aim aim(const Pair& found, const ComparisonInput& input, Attempt attempt) {
   Aim aim;
   const Pair limits{input.excess, input.gouge};
   for (size_t k = 0; k < 2; ++k) {
     const bool failed = found[k] > limits[k];
     aim.gap[k] = failed ? std::max(kProofGap, kFailedGap * found[k]) : kProofGap;
-    const double tight = found[k] + aim.gap[k];
-    aim.target[k] = !failed && (second || tight > limits[k]) ? limits[k] : tight;
+    const double close = attempt == Attempt::kTight ? 0.0 : std::max(kCloseGap, kCloseShare * found[k]);
+    const double tight = found[k] + std::max(aim.gap[k], failed ? 0.0 : close);
+    aim.target[k] = !failed && (attempt == Attempt::kLimits || tight > limits[k]) ? limits[k] : tight;
   }
   return aim;
 }
@@ -280,12 +292,12 @@ class SideProof {
     for (uint32_t c = 0; c < sampled_.cells.size(); ++c) {
       if (sampled_.cells.is_leaf(c) && sampled_.samples[c].state == CellState::kMeasured) cells.push_back(c);
     }
-    share_ = prove_cells(sampled_, cells, input_, aim(found, input_, false), kFirstWork);
+    share_ = prove_cells(sampled_, cells, input_, aim(found, input_, Attempt::kTight), kFirstWork);
     note_findings();
   }
-  /// Cells that the first attempt left open, if their bound decides anything.
-  void second(const Pair& found) {
-    const Aim goal = aim(found, input_, true);
+  /// Cells that the attempts before left open, if their bound decides anything; `all_work` of them together.
+  void again(const Pair& found, Attempt attempt, uint32_t all_work) {
+    const Aim goal = aim(found, input_, attempt);
     std::vector<uint32_t> cells;
     for (const ProofShare::Open& open : share_.open) {
       if (open.proof.bound[0] <= goal.target[0] && open.proof.bound[1] <= goal.target[1]) {
@@ -297,7 +309,7 @@ class SideProof {
     share_.open.clear();
     if (cells.empty()) return;
     const auto work =
-        static_cast<uint32_t>(std::clamp<size_t>(kAllWork / cells.size(), kFirstWork, kMostWork));
+        static_cast<uint32_t>(std::clamp<size_t>(all_work / cells.size(), kFirstWork, kMostWork));
     share_.take(prove_cells(sampled_, cells, input_, goal, work));
     note_findings();
   }
@@ -345,8 +357,10 @@ void prove_extremes(std::array<SampledSide*, 2> sides, const ComparisonInput& in
   std::array<SideProof, 2> proofs{SideProof(*sides[0], input), SideProof(*sides[1], input)};
   const Pair before = extremes();
   for (SideProof& proof : proofs) proof.first(before);
-  const Pair between = extremes();
-  for (SideProof& proof : proofs) proof.second(between);
+  const Pair after_first = extremes();
+  for (SideProof& proof : proofs) proof.again(after_first, Attempt::kClose, kCloseWork);
+  const Pair after_close = extremes();
+  for (SideProof& proof : proofs) proof.again(after_close, Attempt::kLimits, kAllWork);
   const Pair found = extremes();
   result.excess.um = 1e3 * found[0];
   result.gouge.um = 1e3 * found[1];
