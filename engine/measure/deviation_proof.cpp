@@ -297,6 +297,8 @@ class SideProof {
   }
   /// Cells that the attempts before left open, if their bound decides anything; `all_work` of them together.
   void again(const Pair& found, Attempt attempt, uint32_t all_work) {
+    // Where each cell has no more work than before, nothing comes closer.
+    if (attempt == Attempt::kClose && share_.open.size() * 2 * kFirstWork > all_work) return;
     const Aim goal = aim(found, input_, attempt);
     std::vector<uint32_t> cells;
     for (const ProofShare::Open& open : share_.open) {
