@@ -1,6 +1,7 @@
 // The extremes of a comparison and the proof that nothing exceeds them.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/parallel.h"
 #include "measure/deviation_side.h"
@@ -11,11 +12,13 @@ namespace {
 
 constexpr size_t kCellsPerTask = 64;
 /// Samples that each cell may cost at first, and all the cells of a side that are left may cost together.
-constexpr uint32_t kFirstWork = 16;
-constexpr uint32_t kMostWork = 1U << 16U;
-constexpr uint32_t kAllWork = 1'000'000;
+constexpr size_t kFirstWork = 16;
+constexpr size_t kMostWork = 1U << 16U;
+constexpr size_t kAllWork = 1'000'000;
 /// And those of them that are to be bound nearly as close as what was found.
-constexpr uint32_t kCloseWork = 300'000;
+constexpr size_t kCloseWork = 300'000;
+/// Cells that are left are tried in rounds of so many, those with the greatest bounds first.
+constexpr size_t kCellsPerRound = 512;
 /// How close that is, of what was found, and at least, mm.
 constexpr double kCloseShare = 0.005, kCloseGap = 5e-4;
 /// A bound on what is beyond its limit anyhow need not be tighter than this share of it.
@@ -50,29 +53,56 @@ struct CellProof {
   double error = 0.0;  ///< the greatest that was added
   size_t samples = 0;
   bool whole = true;  ///< every piece meets the target or is tight
+
+  /// Of an earlier proof of the same cell the lower bounds stay, for both hold.
+  void join(const CellProof& earlier) {
+    samples += earlier.samples;
+    for (size_t k = 0; k < 2; ++k) {
+      if (earlier.bound[k] >= bound[k]) continue;
+      bound[k] = earlier.bound[k];
+      bound_place[k] = earlier.bound_place[k];
+    }
+  }
+};
+
+/// The targets and gaps that an attempt aims at, mm.
+struct Aim {
+  Pair target, gap;
+
+  /// By how much bounds exceed their targets at most; <= 0: they meet them.
+  double excess_of(const Pair& bound) const { return std::max(bound[0] - target[0], bound[1] - target[1]); }
+};
+
+/// A piece that is to be cut further.
+struct OpenPiece {
+  Piece piece;
+  Pair bound;
+  std::array<FlatPiece, 2> parts;
+  double beyond_mm;  ///< by which its bounds exceed the targets
+  bool operator<(const OpenPiece& other) const { return beyond_mm < other.beyond_mm; }
 };
 
 class Prover {
  public:
-  Prover(const SampledSide& sampled, const ComparisonInput& input, const Pair& target, const Pair& gap,
-         uint32_t work)
-      : sampled_(sampled), input_(input), target_(target), gap_(gap), work_(work) {}
+  Prover(const SampledSide& sampled, const ComparisonInput& input, const Aim& aim, size_t work)
+      : sampled_(sampled), input_(input), aim_(aim), work_(work) {}
 
+  /// Pieces with the greatest bounds are cut first, so what the work allows leaves the least bound.
   CellProof prove(uint32_t cell) const {
     CellProof proof;
     const uint32_t triangle = sampled_.cells[cell].triangle;
-    std::vector<Piece> pieces{{FlatPiece(sampled_.cells.corners(cell)), sampled_.samples[cell]}};
-    while (!pieces.empty()) {
-      const Piece piece = pieces.back();
-      pieces.pop_back();
-      if (piece.sample.state != CellState::kMeasured) continue;
-      note_value(piece.sample, piece.corners.centre(), proof);
-      PieceBounds bounds(sampled_.side, triangle, piece.corners, piece.sample);
-      if (settles(triangle, piece, bounds, proof)) continue;
-      for (const FlatPiece& part : bounds.parts())
-        pieces.push_back(piece_of(sampled_.side, triangle, part, piece));
+    std::vector<OpenPiece> open;
+    look_at({FlatPiece(sampled_.cells.corners(cell)), sampled_.samples[cell]}, triangle, open, proof);
+    while (!open.empty() && proof.samples < work_) {
+      std::pop_heap(open.begin(), open.end());
+      const OpenPiece worst = open.back();
+      open.pop_back();
+      for (const FlatPiece& part : worst.parts)
+        look_at(piece_of(sampled_.side, triangle, part, worst.piece), triangle, open, proof);
       proof.samples += 2;
     }
+    proof.whole = open.empty();
+    for (const OpenPiece& left : open) note_bound(left.piece, left.bound, proof);
     return proof;
   }
 
@@ -111,30 +141,39 @@ class Prover {
   /// Each sign meets its target, or is as tight as it can be.
   bool meets(const Pair& bound, const Pair& value, double error) const {
     for (size_t k = 0; k < 2; ++k) {
-      if (bound[k] > target_[k] && bound[k] - value[k] > gap_[k] + error) return false;
+      if (bound[k] > aim_.target[k] && bound[k] - value[k] > aim_.gap[k] + error) return false;
     }
     return true;
   }
 
-  bool settles(uint32_t triangle, const Piece& piece, PieceBounds& bounds, CellProof& proof) const {
-    Pair value{counted_of(piece.sample, false), counted_of(piece.sample, true)}, bound{};
+  /// Its bounds are noted once they meet the aim; else it is open.
+  void look_at(const Piece& piece, uint32_t triangle, std::vector<OpenPiece>& open, CellProof& proof) const {
+    if (piece.sample.state != CellState::kMeasured) return;
+    note_value(piece.sample, piece.corners.centre(), proof);
+    PieceBounds bounds(sampled_.side, triangle, piece.corners, piece.sample);
+    Pair bound{};
+    if (settles(triangle, piece, bounds, bound, proof)) {
+      note_bound(piece, bound, proof);
+      return;
+    }
+    open.push_back({piece, bound, bounds.parts(), aim_.excess_of(bound)});
+    std::push_heap(open.begin(), open.end());
+  }
+
+  bool settles(uint32_t triangle, const Piece& piece, PieceBounds& bounds, Pair& bound,
+               CellProof& proof) const {
+    Pair value{counted_of(piece.sample, false), counted_of(piece.sample, true)};
     for (const PieceBounds::Step step : PieceBounds::kSteps) {
       bounds.tighten(step);
       bound = counted_bounds(triangle, piece, bounds);
-      if (!meets(bound, value, piece.sample.error)) continue;
-      note_bound(piece, bound, proof);
-      return true;
+      if (meets(bound, value, piece.sample.error)) return true;
     }
     const Vec3 corner = bounds.farthest_corner();
     const DeviationSample there = sampled_.side.look(triangle, corner, &piece.sample);
     ++proof.samples;
     note_value(there, corner, proof);
     for (size_t k = 0; k < 2; ++k) value[k] = std::max(value[k], counted_of(there, k == 1));
-    const bool met = meets(bound, value, std::max(piece.sample.error, there.error));
-    if (!met && proof.samples < work_) return false;
-    proof.whole = proof.whole && met;
-    note_bound(piece, bound, proof);
-    return true;
+    return meets(bound, value, std::max(piece.sample.error, there.error));
   }
 
   static void note_bound(const Piece& piece, const Pair& bound, CellProof& proof) {
@@ -148,8 +187,8 @@ class Prover {
 
   const SampledSide& sampled_;
   const ComparisonInput& input_;
-  Pair target_, gap_;
-  uint32_t work_;
+  Aim aim_;
+  size_t work_;
 };
 
 /// The cells of the greatest deviation of one sign halved again and again: what their centroids miss.
@@ -210,19 +249,31 @@ enum class Attempt {
   kLimits,  ///< to the limits
 };
 
-/// The targets and gaps that an attempt aims at.
-struct Aim {
-  Pair target, gap;
-};
-Aim aim(const Pair& found, const ComparisonInput& input, Attempt attempt) {
+/// What bounds come to at the samples, errors included: no proof aims below it.
+Pair least_bounds(const SampledSide& sampled) {
+  Pair least{0.0, 0.0};
+  for (size_t c = 0; c < sampled.cells.size(); ++c) {
+    const DeviationSample& sample = sampled.samples[c];
+    if (!sampled.cells.is_leaf(c) || sample.state != CellState::kMeasured) continue;
+    for (size_t k = 0; k < 2; ++k) {
+      const bool nothing = (sample.edge && sample.counted == 0.0) || (k == 0 && sample.inside > 0.0);
+      if (!nothing) least[k] = std::max(least[k], (k == 0 ? sample.raw : -sample.raw) + sample.error);
+    }
+  }
+  return least;
+}
+
+/// `least`: what bounds come to at least.
+Aim aim_at(const Pair& found, const Pair& least, const ComparisonInput& input, Attempt attempt) {
   Aim aim;
   const Pair limits{input.excess, input.gouge};
   for (size_t k = 0; k < 2; ++k) {
     const bool failed = found[k] > limits[k];
     aim.gap[k] = failed ? std::max(kProofGap, kFailedGap * found[k]) : kProofGap;
     const double close = attempt == Attempt::kTight ? 0.0 : std::max(kCloseGap, kCloseShare * found[k]);
-    const double tight = found[k] + std::max(aim.gap[k], failed ? 0.0 : close);
-    aim.target[k] = !failed && (attempt == Attempt::kLimits || tight > limits[k]) ? limits[k] : tight;
+    const double tight = std::max(least[k], found[k] + std::max(aim.gap[k], failed ? 0.0 : close));
+    aim.target[k] = failed ? tight : attempt == Attempt::kLimits ? limits[k] : std::min(tight, limits[k]);
+    if (!failed && attempt != Attempt::kLimits && least[k] > limits[k]) aim.target[k] = tight;
   }
   return aim;
 }
@@ -252,21 +303,29 @@ struct ProofShare {
       closed.bound_place[k] = proof.bound_place[k];
     }
   }
-  void take(ProofShare share) {
+  /// Those of its open proofs too.
+  size_t samples() const {
+    size_t sum = closed.samples;
+    for (const Open& one : open) sum += one.proof.samples;
+    return sum;
+  }
+  void take(const ProofShare& share) {
     close(share.closed);
     open.insert(open.end(), share.open.begin(), share.open.end());
     findings.insert(findings.end(), share.findings.begin(), share.findings.end());
   }
 };
 
+/// `known`: for each of the cells what is proven already; empty: nothing.
 ProofShare prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& cells,
-                       const ComparisonInput& input, const Aim& aim, uint32_t work) {
-  const Prover prover(sampled, input, aim.target, aim.gap, work);
-  std::vector<ProofShare> shares((cells.size() + kCellsPerTask - 1) / kCellsPerTask);
-  parallel_chunks(cells.size(), kCellsPerTask, [&](size_t begin, size_t end) {
-    ProofShare& mine = shares[begin / kCellsPerTask];
+                       std::span<const CellProof* const> known, const Prover& prover) {
+  const size_t per_task = std::clamp<size_t>(cells.size() / kCellsPerTask, 1, kCellsPerTask);
+  std::vector<ProofShare> shares((cells.size() + per_task - 1) / per_task);
+  parallel_chunks(cells.size(), per_task, [&](size_t begin, size_t end) {
+    ProofShare& mine = shares[begin / per_task];
     for (size_t i = begin; i < end; ++i) {
-      const CellProof proof = prover.prove(cells[i]);
+      CellProof proof = prover.prove(cells[i]);
+      if (!known.empty()) proof.join(*known[i]);
       for (size_t k = 0; k < 2; ++k) {
         if (proof.value[k] > sampled.worst(cells[i], k == 1) + kWorse)
           mine.findings.push_back({cells[i], k, proof.value[k], proof.place[k]});
@@ -279,42 +338,45 @@ ProofShare prove_cells(const SampledSide& sampled, const std::vector<uint32_t>& 
     }
   });
   ProofShare all;
-  for (ProofShare& share : shares) all.take(std::move(share));
+  for (const ProofShare& share : shares) all.take(share);
   return all;
 }
 
 class SideProof {
  public:
-  SideProof(SampledSide& sampled, const ComparisonInput& input) : sampled_(sampled), input_(input) {}
+  SideProof(SampledSide& sampled, const ComparisonInput& input)
+      : sampled_(sampled), input_(input), least_(least_bounds(sampled)) {}
 
-  void first(const Pair& found) {
+  const Pair& least() const { return least_; }
+
+  void first(const Aim& aim) {
     std::vector<uint32_t> cells;
     for (uint32_t c = 0; c < sampled_.cells.size(); ++c) {
       if (sampled_.cells.is_leaf(c) && sampled_.samples[c].state == CellState::kMeasured) cells.push_back(c);
     }
-    share_ = prove_cells(sampled_, cells, input_, aim(found, input_, Attempt::kTight), kFirstWork);
+    share_ = prove_cells(sampled_, cells, {}, Prover(sampled_, input_, aim, kFirstWork));
     note_findings();
   }
-  /// Cells that the attempts before left open, if their bound decides anything; `all_work` of them together.
-  void again(const Pair& found, Attempt attempt, uint32_t all_work) {
-    // Where each cell has no more work than before, nothing comes closer.
-    if (attempt == Attempt::kClose && share_.open.size() * 2 * kFirstWork > all_work) return;
-    const Aim goal = aim(found, input_, attempt);
-    std::vector<uint32_t> cells;
-    for (const ProofShare::Open& open : share_.open) {
-      if (open.proof.bound[0] <= goal.target[0] && open.proof.bound[1] <= goal.target[1]) {
-        share_.close(open.proof);
-      } else {
-        cells.push_back(open.cell);
-      }
-    }
+
+  /// Cells that the attempts before left open, those with the greatest bounds first. What a cell's share of
+  /// `all_work` cannot bring below the target is what is proven of the whole side: cells below it are done.
+  void again(Aim aim, size_t all_work) {
+    std::vector<ProofShare::Open> open = std::move(share_.open);
     share_.open.clear();
-    if (cells.empty()) return;
-    const auto work =
-        static_cast<uint32_t>(std::clamp<size_t>(all_work / cells.size(), kFirstWork, kMostWork));
-    share_.take(prove_cells(sampled_, cells, input_, goal, work));
-    note_findings();
+    std::sort(open.begin(), open.end(), [&](const ProofShare::Open& a, const ProofShare::Open& b) {
+      return std::pair(-aim.excess_of(a.proof.bound), a.cell) <
+             std::pair(-aim.excess_of(b.proof.bound), b.cell);
+    });
+    size_t next = 0, left = all_work;
+    while (next < open.size() && left > 0) {
+      const size_t end = std::min(open.size(), next + kCellsPerRound);
+      const size_t of_round = end == open.size() ? left : left / 2;
+      left -= std::min(left, try_again({open.data() + next, end - next}, aim, of_round));
+      next = end;
+    }
+    share_.open.insert(share_.open.end(), open.begin() + static_cast<ptrdiff_t>(next), open.end());
   }
+
   void add_to(PartComparison& result) {
     for (const ProofShare::Open& open : share_.open) share_.close(open.proof);
     const CellProof& all = share_.closed;
@@ -330,6 +392,31 @@ class SideProof {
   }
 
  private:
+  /// Raises the targets to what stays open. Returns the samples that it took.
+  size_t try_again(std::span<const ProofShare::Open> open, Aim& aim, size_t work) {
+    std::vector<uint32_t> cells;
+    std::vector<const CellProof*> known;
+    size_t before = 0;
+    for (const ProofShare::Open& one : open) {
+      if (aim.excess_of(one.proof.bound) <= 0.0) {
+        share_.close(one.proof);
+        continue;
+      }
+      cells.push_back(one.cell);
+      known.push_back(&one.proof);
+      before += one.proof.samples;
+    }
+    if (cells.empty()) return 0;
+    const size_t each = std::clamp(work / cells.size(), kFirstWork, kMostWork);
+    const ProofShare share = prove_cells(sampled_, cells, known, Prover(sampled_, input_, aim, each));
+    for (const ProofShare::Open& one : share.open) {
+      for (size_t k = 0; k < 2; ++k) aim.target[k] = std::max(aim.target[k], one.proof.bound[k]);
+    }
+    share_.take(share);
+    note_findings();
+    return share.samples() - before;
+  }
+
   void note_findings() {
     for (const ProofShare::Worse& worse : share_.findings)
       sampled_.findings[worse.kind][worse.cell] = {worse.value, worse.place};
@@ -338,6 +425,7 @@ class SideProof {
 
   SampledSide& sampled_;
   const ComparisonInput& input_;
+  Pair least_;
   ProofShare share_;
 };
 
@@ -357,12 +445,17 @@ void prove_extremes(std::array<SampledSide*, 2> sides, const ComparisonInput& in
     climb(*side, true);
   }
   std::array<SideProof, 2> proofs{SideProof(*sides[0], input), SideProof(*sides[1], input)};
-  const Pair before = extremes();
-  for (SideProof& proof : proofs) proof.first(before);
-  const Pair after_first = extremes();
-  for (SideProof& proof : proofs) proof.again(after_first, Attempt::kClose, kCloseWork);
-  const Pair after_close = extremes();
-  for (SideProof& proof : proofs) proof.again(after_close, Attempt::kLimits, kAllWork);
+  Pair least{0.0, 0.0};
+  for (const SideProof& proof : proofs) {
+    for (size_t k = 0; k < 2; ++k) least[k] = std::max(least[k], proof.least()[k]);
+  }
+  const auto aim_of = [&](Attempt attempt) { return aim_at(extremes(), least, input, attempt); };
+  const Aim tight = aim_of(Attempt::kTight);
+  for (SideProof& proof : proofs) proof.first(tight);
+  const Aim close = aim_of(Attempt::kClose);
+  for (SideProof& proof : proofs) proof.again(close, kCloseWork);
+  const Aim limits = aim_of(Attempt::kLimits);
+  for (SideProof& proof : proofs) proof.again(limits, kAllWork);
   const Pair found = extremes();
   result.excess.um = 1e3 * found[0];
   result.gouge.um = 1e3 * found[1];
