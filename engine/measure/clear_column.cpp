@@ -142,23 +142,38 @@ class Column {
   size_t count_ = 0;
 };
 
+/// The ball in which the facets of a column and the errors that matter lie, mm.
+double ball_of(const FlatPiece& piece, const TargetMesh& target, double height_mm) {
+  return std::hypot(piece.radius(), height_mm) +
+         TargetMesh::kReach * std::min(TargetMesh::kQuiet, target.most_error);
+}
+
 /// All facets of the column, and the greatest error of those that come near; false when there are too many.
 bool fill(Column& column, const FlatPiece& piece, const TargetMesh& target, double height_mm,
           double& error_mm) {
   std::array<uint32_t, kMostFacets> facets{};
   size_t count = 0;
-  target.mesh->tree().each_near(piece.centre(), std::hypot(piece.radius(), height_mm) + target.most_error,
-                                [&](uint32_t facet) {
-                                  if (count < kMostFacets) facets[count] = facet;
-                                  ++count;
-                                });
+  target.mesh->tree().each_near(piece.centre(), ball_of(piece, target, height_mm), [&](uint32_t facet) {
+    if (count < kMostFacets) facets[count] = facet;
+    ++count;
+  });
   if (count > kMostFacets) return false;
   std::sort(facets.begin(), facets.begin() + static_cast<ptrdiff_t>(count));  // sums in one order
   for (size_t i = 0; i < count; ++i) {
     column.add(target.corners(facets[i]));
-    error_mm = std::max(error_mm, target.error(facets[i]));
+    error_mm = std::max(error_mm, target.near_error(facets[i]));
   }
   return true;
+}
+
+/// Whether all errors that can matter to places so deep in the column are known from its facets: with kReach,
+/// 5/4 of the way to the place and 1/4 of the target's distance lie in the ball. The column is higher than
+/// that distance by the piece's radius at least.
+bool knows_errors(const FlatPiece& piece, const TargetMesh& target, double height_mm, double depth_mm) {
+  const double share = 1.0 / (TargetMesh::kReach - 1.0);
+  const double way = std::hypot(piece.radius(), depth_mm);
+  const double distance = std::max(0.0, height_mm - piece.radius());
+  return (1.0 + share) * way + share * distance <= ball_of(piece, target, height_mm);
 }
 
 /// Every point of the piece lies within `depth` of a clear part that is wholly outside or inside.
@@ -218,7 +233,9 @@ DistanceRange clear_column(const FlatPiece& piece, const TargetMesh& target, dou
   for (const Slab& slab : column.clear_slabs()) {
     if (++asked > kMostSlabs || (std::isfinite(range.low) && std::isfinite(range.high))) break;
     const Vec3 inside = column.over_centre(0.5 * (slab.low + slab.high));
-    bound_by(slab.depth() + column.widening_mm + error_mm, target.mesh->at(inside).distance_mm > 0.0, range);
+    const bool known = knows_errors(piece, target, height_mm, slab.depth());
+    const double error = known ? error_mm : std::max(error_mm, target.most_error);
+    bound_by(slab.depth() + column.widening_mm + error, target.mesh->at(inside).distance_mm > 0.0, range);
   }
   return range;
 }

@@ -17,9 +17,15 @@ struct DistanceRange {
 struct TargetMesh {
   const mesh::SignedDistance* mesh = nullptr;
   std::span<const double> errors;  ///< per facet, mm; empty: the facets are exact
-  double most_error = 0.0;         ///< the greatest of them
+  double most_error = 0.0;         ///< the greatest of them but for those of rounded edges
+  /// Per facet the greatest of its own error and those above kQuiet of facets that are nearer than kReach
+  /// times their error; empty: the errors themselves.
+  std::span<const double> near_errors;
+  static constexpr double kQuiet = 5e-4;  ///< mm
+  static constexpr double kReach = 5.0;
 
   double error(uint32_t facet) const { return errors.empty() ? 0.0 : errors[facet]; }
+  double near_error(uint32_t facet) const { return near_errors.empty() ? error(facet) : near_errors[facet]; }
   Corners corners(uint32_t facet) const {
     return {mesh->corner(facet, 0), mesh->corner(facet, 1), mesh->corner(facet, 2)};
   }
@@ -42,7 +48,9 @@ struct TargetMesh {
 ///   piece. A piece that no facet crosses is on one side of the target.
 ///
 /// The piece is made smaller by kRim all round, so that walls which end at its sides stay outside, and the
-/// bounds wider by as much as that can matter, and by the greatest error of the facets that come near. Of an
+/// bounds wider by as much as that can matter, and by the greatest near_error() of the facets around it. A
+/// facet that can pass a place q of the column lies within its own error of q. So it is one of those around
+/// the column, or within kReach times its error of them, unless q is far away: there most_error counts. Of an
 /// `open` target, whose sign a border changes, one sheet must cover the whole piece: the projected areas of
 /// its facets in C must sum to the piece's.
 /// Nothing is bounded (infinite) where that fails, or more than a hundred facets come near.

@@ -47,22 +47,40 @@ Vec3 normal_of(const stock::DesignMesh& faces, uint32_t triangle, const Vec2& uv
   return surface::outward_normal(surface, surface.derivatives(uv.x(), uv.y()), uv);
 }
 
-/// The worst of its three vertices for each facet; where the grid has rounded an edge, what that may be off.
+/// The worst of its three vertices for each facet.
 std::vector<double> errors_of_stock(const ComparisonInput& input) {
   std::vector<double> errors;
   if (input.stock_error.empty()) return errors;
-  for (const auto& t : input.stock->mesh().triangles) {
-    double error = std::max({input.stock_error[t[0]], input.stock_error[t[1]], input.stock_error[t[2]]});
-    for (const uint32_t v : t) {
-      if (!input.stock_edge.empty() && input.stock_edge[v] != 0) error = std::max(error, input.edge);
-    }
-    errors.push_back(error);
-  }
+  for (const auto& t : input.stock->mesh().triangles)
+    errors.push_back(std::max({input.stock_error[t[0]], input.stock_error[t[1]], input.stock_error[t[2]]}));
   return errors;
 }
 
-TargetMesh target_of(const mesh::SignedDistance& mesh, const std::vector<double>& errors) {
-  return {&mesh, errors, errors.empty() ? 0.0 : *std::max_element(errors.begin(), errors.end())};
+/// Where the grid has rounded an edge, what that may be off: tips are cut off there, and what lies beside
+/// them is as exact as elsewhere.
+void add_edge_errors(const ComparisonInput& input, std::vector<double>& errors) {
+  if (input.stock_edge.empty()) return;
+  for (size_t f = 0; f < errors.size(); ++f) {
+    for (const uint32_t v : input.stock->mesh().triangles[f]) {
+      if (input.stock_edge[v] != 0) errors[f] = std::max(errors[f], input.edge);
+    }
+  }
+}
+
+/// TargetMesh::near_errors, but for those of edges.
+std::vector<double> near_errors_of(const mesh::SignedDistance& mesh, const std::vector<double>& errors) {
+  std::vector<double> near = errors;
+  for (uint32_t t = 0; t < errors.size(); ++t) {
+    if (errors[t] <= TargetMesh::kQuiet) continue;
+    const Corners corners{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    mesh.tree().each_near(centroid_of(corners), radius_of(corners) + TargetMesh::kReach * errors[t],
+                          [&](uint32_t facet) { near[facet] = std::max(near[facet], errors[t]); });
+  }
+  return near;
+}
+
+double greatest_of(const std::vector<double>& errors) {
+  return errors.empty() ? 0.0 : *std::max_element(errors.begin(), errors.end());
 }
 
 }  // namespace
@@ -72,8 +90,13 @@ ComparisonScene::ComparisonScene(const ComparisonInput& comparison) : input(comp
   design_errors = input.design_errors;
   if (design_errors.empty() && input.design_error > 0.0)
     design_errors.assign(input.design->mesh().triangles.size(), input.design_error);
-  stock = target_of(*input.stock, stock_errors);
-  design = target_of(*input.design, design_errors);
+  stock_near_errors = near_errors_of(*input.stock, stock_errors);
+  design_near_errors = near_errors_of(*input.design, design_errors);
+  const double most_of_stock = greatest_of(stock_errors);
+  add_edge_errors(input, stock_errors);
+  add_edge_errors(input, stock_near_errors);
+  stock = {input.stock, stock_errors, most_of_stock, stock_near_errors};
+  design = {input.design, design_errors, greatest_of(design_errors), design_near_errors};
   if (!input.open_design) return;
   bound_normals(*input.design, normal_axis, normal_spread_rad);
   if (input.edge <= 0.0) return;

@@ -38,7 +38,8 @@ double counted_of(const DeviationSample& sample, bool gouge);
 struct ComparisonScene {
   explicit ComparisonScene(const ComparisonInput& comparison);
   const ComparisonInput& input;
-  std::vector<double> stock_errors, design_errors;  ///< per facet, mm; empty: none
+  std::vector<double> stock_errors, design_errors;            ///< per facet, mm; empty: none
+  std::vector<double> stock_near_errors, design_near_errors;  ///< TargetMesh::near_errors
   TargetMesh stock, design;
   /// The border of open patches as facets without area; null when there is none.
   TriMesh border_mesh;

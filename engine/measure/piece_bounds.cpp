@@ -35,8 +35,17 @@ void PieceBounds::within(double low, double high) {
 
 void PieceBounds::tighten(Step step) {
   if (step == Step::kWay) {
-    const double way = moved_.radius() + target_.error(centre_.facet);
-    within(centre_.distance - way, centre_.distance + way);
+    const double d = centre_.distance, own = target_.error(centre_.facet), r = moved_.radius();
+    const double most = target_.most_error;
+    // Only an error that comes as far as the centre changes the sign there.
+    const double near = std::max(target_.near_error(centre_.facet), std::min(TargetMesh::kQuiet, most));
+    const double other_side = std::min(std::abs(d) - near, std::max(0.0, std::abs(d) - most)) - r;
+    const double away = std::abs(d) + own + r;
+    if (d < 0.0) {
+      within(-away, -other_side);
+    } else {
+      within(other_side, away);
+    }
   } else if (step == Step::kFacet) {
     const double most = target_.distance_over(centre_.facet, moved_);
     within(-most, most);
@@ -46,7 +55,8 @@ void PieceBounds::tighten(Step step) {
     within(column.low, column.high);
     // Against an offset design the distance itself must not fall short.
     const double asked = side_.offset_mm();
-    if (asked > 0.0 && distance_.low < asked && centre_.distance > 0.0 && column.low >= -kClear - target_.most_error)
+    if (asked > 0.0 && distance_.low < asked && centre_.distance > 0.0 &&
+        column.low >= -kClear - target_.most_error)
       within(least_distance(moved_, *target_.mesh, centre_.distance) - target_.most_error, distance_.high);
   } else {
     look_from_corners();
