@@ -163,19 +163,8 @@ ComparedDesign design_of_cad(const brep::FineFacets& fine, const brep::Facets& f
   return design;
 }
 
-/// Divided as finely as the number of facets allows, which grows no faster than one over the chord. The mesh
-/// is empty where none can be divided.
 brep::FineFacets finest(const brep::Facets& facets) {
-  const double coarsest = kFineChords.back();
-  brep::FineFacets coarse = brep::refine_facets(facets, coarsest, kFineFacets);
-  const auto count = static_cast<double>(coarse.mesh.triangles.size());
-  for (const double chord : kFineChords) {
-    if (chord == coarsest || count == 0.0) break;
-    if (count * coarsest / chord > kFineFacets) continue;
-    brep::FineFacets fine = brep::refine_facets(facets, chord, kFineFacets);
-    if (!fine.mesh.triangles.empty()) return fine;
-  }
-  return coarse;
+  return brep::finest_facets(facets, kFineChords, kFineFacets);
 }
 
 /// The closed solids of a CAD file.

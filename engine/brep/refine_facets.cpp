@@ -493,4 +493,17 @@ FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most) {
   return refiner.result();
 }
 
+FineFacets finest_facets(const Facets& facets, std::span<const double> chords_mm, size_t most) {
+  const double coarsest = chords_mm.back();
+  FineFacets coarse = refine_facets(facets, coarsest, most);
+  const auto count = static_cast<double>(coarse.mesh.triangles.size());
+  if (count == 0.0) return coarse;
+  for (const double chord : chords_mm.first(chords_mm.size() - 1)) {
+    if (count * coarsest / chord > static_cast<double>(most)) continue;
+    FineFacets fine = refine_facets(facets, chord, most);
+    if (!fine.mesh.triangles.empty()) return fine;
+  }
+  return coarse;
+}
+
 }  // namespace swarf::brep
