@@ -13,6 +13,8 @@ namespace {
 constexpr size_t kCellsPerTask = 64;
 /// Samples that each cell may cost at first, and all the cells of a side that are left may cost together.
 constexpr size_t kFirstWork = 16;
+/// What all cells of a side may cost together at first: with more than 300 000 each has less.
+constexpr size_t kAllFirstWork = 5'000'000;
 constexpr size_t kMostWork = 1U << 16U;
 constexpr size_t kAllWork = 1'000'000;
 /// And those of them that are to be bound nearly as close as what was found.
@@ -354,7 +356,8 @@ class SideProof {
     for (uint32_t c = 0; c < sampled_.cells.size(); ++c) {
       if (sampled_.cells.is_leaf(c) && sampled_.samples[c].state == CellState::kMeasured) cells.push_back(c);
     }
-    share_ = prove_cells(sampled_, cells, {}, Prover(sampled_, input_, aim, kFirstWork));
+    const size_t work = std::min(kFirstWork, kAllFirstWork / std::max<size_t>(1, cells.size()));
+    share_ = prove_cells(sampled_, cells, {}, Prover(sampled_, input_, aim, work));
     note_findings();
   }
 
