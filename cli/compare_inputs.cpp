@@ -8,7 +8,10 @@
 #include <filesystem>
 
 #include "base/angles.h"
+#include "base/check.h"
 #include "brep/model.h"
+#include "brep/refine_facets.h"
+#include "mesh/mesh_check.h"
 #include "mesh/mesh_crossing.h"
 #include "mesh/mesh_io.h"
 #include "mesh/mesh_nesting.h"
@@ -30,8 +33,11 @@ constexpr double kSharp = 0.5235987755982988;
 /// Facets of parametric surfaces stay this close to them, mm, unless that takes more than kMostFacets.
 constexpr double kChord = 5e-5;
 constexpr size_t kMostFacets = 3'000'000;
-/// Of CAD files, mm: samples are taken on the faces, and what is proven between them on the facets.
-constexpr double kCadChord = 5e-3;
+/// Of CAD files, mm: so close the library keeps facets and edges that are divided further, so close they are
+/// divided, to so many; and so close it keeps those that cannot be divided.
+constexpr double kBaseChord = 0.05, kBaseEdge = 0.02, kCadChord = 5e-3;
+constexpr std::array kFineChords{3e-4, 1e-3, 2e-3, 4e-3};
+constexpr size_t kFineFacets = 500'000;
 /// Half a unit in the last place of a float, relative.
 constexpr double kFloatRounding = 6e-8;
 
@@ -121,21 +127,65 @@ ComparedDesign design_of_patches(const std::vector<surface::SurfacePtr>& surface
   }
 }
 
-/// Closed facets with the surfaces that they stand for, null: they are the design.
-ComparedDesign design_of_facets(const TriMesh& mesh, const surface::UnderFacetsPtr& under,
-                                const std::string& file, const std::string& name) {
+/// Of the facets that a distance has kept: with equal positions as one, those without area are left out.
+std::vector<double> kept_facets_of(const TriMesh& mesh, const std::vector<double>& strays,
+                                   const mesh::SignedDistance& distance) {
+  const mesh::WeldedMesh welded = mesh::weld(mesh);
+  std::vector<double> kept;
+  for (size_t t = 0; t < welded.triangles.size(); ++t) {
+    const auto& [a, b, c] = welded.triangles[t];
+    const Vec3 &p = welded.points[a], &q = welded.points[b], &r = welded.points[c];
+    if ((q - p).cross(r - p).squaredNorm() > 0.0) kept.push_back(strays[welded.sources[t]]);
+  }
+  SWARF_CHECK(kept.size() == distance.mesh().triangles.size(), "errors of the facets of a distance");
+  return kept;
+}
+
+/// Closed facets of a mesh file, which are the design.
+ComparedDesign design_of_mesh(const TriMesh& mesh, const std::string& file, const std::string& name) {
   ComparedDesign design;
   design.mesh = checked_mesh(mesh, file, name);
-  if (under == nullptr) return design;
-  design.error_mm = under->chord_mm;
-  design.faces = std::make_shared<stock::DesignMesh>(mesh, under);
   return design;
+}
+
+/// Facets of a CAD file as fine as can be, else as they are: samples are measured from the faces over them.
+ComparedDesign design_of_cad(const brep::FineFacets& fine, const brep::Facets& facets,
+                             const std::string& file) {
+  if (fine.mesh.triangles.empty()) {
+    ComparedDesign design = design_of_mesh(facets.mesh, file, "design");
+    design.error_mm = std::max(facets.chord_mm, facets.under->edge_mm);
+    design.faces = std::make_shared<stock::DesignMesh>(facets.mesh, facets.under);
+    return design;
+  }
+  ComparedDesign design = design_of_mesh(fine.mesh, file, "design");
+  design.errors = kept_facets_of(fine.mesh, fine.chords_mm, *design.mesh);
+  design.error_mm = *std::max_element(design.errors.begin(), design.errors.end());
+  return design;
+}
+
+brep::FineFacets finest(const brep::Facets& facets) {
+  return brep::finest_facets(facets, kFineChords, kFineFacets);
 }
 
 /// The closed solids of a CAD file.
 ComparedDesign design_of_cad(const std::string& file) {
-  const brep::Facets facets = brep::tessellate(brep::read_cad(file), kCadChord, true);
-  return design_of_facets(facets.mesh, facets.under, file, "design");
+  const brep::Model model = brep::read_cad(file);
+  const brep::Facets coarse = brep::tessellate(model, kBaseChord, true, kBaseEdge);
+  const brep::FineFacets fine = finest(coarse);
+  if (!fine.mesh.triangles.empty()) return design_of_cad(fine, coarse, file);
+  const brep::Facets facets = brep::tessellate(model, kCadChord, true);
+  return design_of_cad(finest(facets), facets, file);
+}
+
+/// The design of a scene, which stands where the scene puts it.
+ComparedDesign design_of_job(const sim::Job& job) {
+  const std::string& file = job.scene.design.mesh_file;
+  if (job.design_under == nullptr) return design_of_mesh(*job.design_mesh, file, "design mesh");
+  brep::Facets facets;
+  facets.mesh = *job.design_mesh;
+  facets.under = job.design_under;
+  facets.chord_mm = job.design_under->chord_mm;
+  return design_of_cad(finest(facets), facets, file);
 }
 
 /// Files of CAD programs, which the reader of programs would otherwise take for blocks.
@@ -177,14 +227,12 @@ ComparedDesign load_design(const std::string& file, double pitch_mm) {
   }
   const std::string kind = extension(file);
   if (kind == ".stl" || kind == ".ply" || kind == ".obj" || mesh::is_scene_ending(kind))
-    return design_of_facets(mesh::load_mesh(file), nullptr, file, "design mesh");
+    return design_of_mesh(mesh::load_mesh(file), file, "design mesh");
   if (kind == ".toml") {
     const sim::Job job = sim::load_job(file, {});
     if (!job.has_design()) refuse_empty(file);
     ComparedDesign design =
-        job.design_mesh != nullptr
-            ? design_of_facets(*job.design_mesh, job.design_under, job.scene.design.mesh_file, "design mesh")
-            : design_of_patches(job.design, pitch_mm);
+        job.design_mesh != nullptr ? design_of_job(job) : design_of_patches(job.design, pitch_mm);
     design.accept = job.scene.accept;
     return design;
   }

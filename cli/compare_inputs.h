@@ -29,10 +29,11 @@ struct ComparedDesign {
   std::shared_ptr<const mesh::SignedDistance> mesh;
   bool open = false;                               ///< patches of parametric surfaces
   double error_mm = 0.0;                           ///< by which the facets stray from the surfaces
+  std::vector<double> errors;                      ///< the same per facet of the mesh; empty: it for all
   std::optional<sim::AcceptLimits> accept;         ///< of a scene
   bool grid = false;                               ///< an earlier stock, as its grid shows it
   double voxel_mm = 0.0, grid_error_mm = 0.0;      ///< of that grid; the error away from sharp edges
-  std::shared_ptr<const stock::DesignMesh> faces;  ///< of a CAD file: the surfaces over the facets
+  std::shared_ptr<const stock::DesignMesh> faces;  ///< of a CAD file: the surfaces over coarse facets
 };
 
 /// A stock of a run (.vdb), or a closed mesh. Throws InputError for anything else, and for meshes that are

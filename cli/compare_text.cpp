@@ -153,8 +153,8 @@ void add_areas(const measure::ComparisonInput& input, const measure::PartCompari
     rows.emplace_back(
         "edges",
         fmt::format("{:.2f} mm2 of the stock and {:.2f} mm2 of the design lie at edges "
-                    "that the grid rounds: up to {:.2f} um there, of which {:g} um are "
-                    "put down to the grid (--edge-mm)",
+                    "that the grid rounds: up to {:.2f} um there; {:g} um and less are put down "
+                    "to the grid and in no number, more counts wholly (--edge-mm)",
                     r.stock.edge_mm2, r.design.edge_mm2, r.edge_greatest_um, um_from_mm(input.edge)));
   }
 }
@@ -187,7 +187,8 @@ std::string alignment_text(const measure::Alignment& aligned) {
 }
 
 std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
-                                         const measure::PartComparison& result) {
+                                         const measure::PartComparison& result,
+                                         const ComparedPieces& pieces) {
   std::vector<sim::Check> checks{
       judge_extreme("excess", "Highest excess", um_from_mm(input.excess), result.excess),
       judge_extreme("gouge", "Deepest gouge", um_from_mm(input.gouge), result.gouge)};
@@ -198,10 +199,18 @@ std::vector<sim::Check> judge_comparison(const measure::ComparisonInput& input,
   area.what = fmt::format("{:.3f} mm2 not measured", unmeasured(result));
   area.outcome = unmeasured(result) > 0.0 ? sim::Outcome::kFails : sim::Outcome::kHolds;
   checks.push_back(std::move(area));
+  checks.push_back(pieces_check(pieces));
   return checks;
 }
 
 namespace {
+
+ordered_json pieces_json(const ComparedPieces& pieces) {
+  ordered_json loose = ordered_json::array();
+  for (const SolidPiece& piece : pieces.loose())
+    loose.push_back({{"volume_mm3", piece.volume_mm3}, {"place_mm", place_json(piece.middle)}});
+  return {{"stock", pieces.stock.size()}, {"design", pieces.design.size()}, {"loose", loose}};
+}
 
 /// Errors that no number of the comparison includes; null: the design is no grid.
 ordered_json grids_json(const ComparedStock& stock, const ComparedDesign& design) {
@@ -216,7 +225,7 @@ ordered_json grids_json(const ComparedStock& stock, const ComparedDesign& design
 std::string comparison_json(const ComparedStock& stock, const ComparedDesign& design,
                             const measure::ComparisonInput& input, const measure::PartComparison& result,
                             const std::vector<sim::Check>& checks,
-                            const std::optional<measure::Alignment>& aligned) {
+                            const std::optional<measure::Alignment>& aligned, const ComparedPieces& pieces) {
   ordered_json list = ordered_json::array();
   for (const sim::Check& check : checks) list.push_back(check_json(check));
   return ordered_json{
@@ -228,6 +237,7 @@ std::string comparison_json(const ComparedStock& stock, const ComparedDesign& de
               {{"excess_mm3", or_null(result.excess_mm3)},
                {"gouge_mm3", or_null(result.gouge_mm3)},
                {"difference_mm3", or_null(result.difference_mm3)}}},
+             {"pieces", pieces_json(pieces)},
              {"alignment", aligned ? alignment_json(*aligned) : ordered_json(nullptr)},
              {"stock", side_json(result.stock)},
              {"design", side_json(result.design)},
@@ -245,7 +255,8 @@ std::string comparison_json(const ComparedStock& stock, const ComparedDesign& de
 }
 
 Rows comparison_rows(const ComparedStock& stock, const ComparedDesign& design,
-                     const measure::ComparisonInput& input, const measure::PartComparison& r) {
+                     const measure::ComparisonInput& input, const measure::PartComparison& r,
+                     const ComparedPieces& pieces) {
   Rows rows{{"stock", fmt::format("{:.2f} mm2 against the design, {} samples", r.stock.area_mm2,
                                   r.stock.samples + r.stock.proof_samples)},
             {"design", fmt::format("{:.2f} mm2 against the stock, {} samples", r.design.area_mm2,
@@ -253,6 +264,7 @@ Rows comparison_rows(const ComparedStock& stock, const ComparedDesign& design,
             {"accuracy", accuracy_text(stock, design, input, r)}};
   if (input.allowance > 0.0)
     rows.emplace_back("allowance", fmt::format("{:g} mm left on purpose, all round", input.allowance));
+  if (const std::string loose = loose_text(pieces); !loose.empty()) rows.emplace_back("pieces", loose);
   add_areas(input, r, rows);
   rows.emplace_back("excess", extreme_text(r.excess));
   rows.emplace_back("gouge", extreme_text(r.gouge));

@@ -315,7 +315,7 @@ void print_setups(const std::vector<reports::SetupOutcome>& done, size_t count, 
       std::count_if(done.begin(), done.end(), [](const auto& one) { return one.passes; }));
   const std::string rest =
       done.size() < count ? fmt::format("; {} not run: the whole is not judged", count - done.size()) : "";
-  const char* const verdict = passed < done.size() ? "FINDINGS" : passed < count ? "STOPPED" : "PASS";
+  const char* const verdict = passed < done.size() ? "FINDINGS" : done.size() < count ? "NOT JUDGED" : "PASS";
   fmt::print("  {}: {} of {} set-ups pass{}\n  results: {}\n", verdict, passed, count, rest, folder);
 }
 
@@ -365,7 +365,8 @@ int run_setups(const RunOptions& options, size_t count, std::vector<reports::Fil
     fmt::print("{}", text);
   else
     print_setups(done, count, folder);
-  return exit_code;
+  // Set-ups that did not run leave the whole without a verdict.
+  return done.size() < count ? std::max(exit_code, kFindings) : exit_code;
 }
 
 int run(const RunOptions& options, std::vector<reports::FileVerdict>& found) {

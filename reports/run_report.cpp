@@ -540,6 +540,7 @@ std::string clearance_line(const sim::Result& result) {
 
 /// Contacts of machine, fixtures and tools, or how near they came.
 std::string machine_line(const sim::MachineContacts& contacts) {
+  if (contacts.findings.pairs.empty()) return "not checked: no pairs of links, fixtures and tools";
   std::string line = fmt::format("{} contacts among {} pairs of links, fixtures and tools",
                                  contacts.contacts(), contacts.findings.pairs.size());
   if (const auto& stock = contacts.as_cut)

@@ -102,15 +102,20 @@ class Refiner {
           {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
     }
     for (const FineFacet& facet : facets_) fine.mesh.triangles.push_back(facet.corners);
-    constexpr size_t kFacetsPerTask = 256;
-    std::vector<double> off((facets_.size() + kFacetsPerTask - 1) / kFacetsPerTask, 0.0);
-    parallel_chunks(facets_.size(), kFacetsPerTask, [&](size_t begin, size_t end) {
-      double& most = off[begin / kFacetsPerTask];
-      for (size_t n = begin; n < end; ++n) most = std::max(most, strays(facets_[n]));
-    });
-    for (const double one : off) fine.chord_mm = std::max(fine.chord_mm, one);
     constexpr double kFloatStep = 0x1.0p-24 * 1.7320508;  // half a step in each of three coordinates
-    fine.chord_mm = std::max(fine.chord_mm, most_sagitta_) + kFloatStep * farthest;
+    constexpr size_t kFacetsPerTask = 256;
+    const std::map<SideKey, double> sides = sagittas();
+    fine.chords_mm.resize(facets_.size());
+    parallel_chunks(facets_.size(), kFacetsPerTask, [&](size_t begin, size_t end) {
+      for (size_t n = begin; n < end; ++n) {
+        const std::array<uint32_t, 3>& corners = facets_[n].corners;
+        double most = strays(facets_[n]);
+        for (size_t k = 0; k < 3; ++k)
+          most = std::max(most, sides.at(key_of(corners[k], corners[(k + 1) % 3])));
+        fine.chords_mm[n] = most + kFloatStep * farthest;
+      }
+    });
+    for (const double one : fine.chords_mm) fine.chord_mm = std::max(fine.chord_mm, one);
     return fine;
   }
 
@@ -400,7 +405,6 @@ class Refiner {
     bool any = false;
     for (auto& [key, middle] : middles) {
       if (!(middle.sagitta_mm > chord_mm_)) {
-        most_sagitta_ = std::max(most_sagitta_, middle.sagitta_mm);
         settled_.insert(number_of(key));
         continue;
       }
@@ -414,6 +418,18 @@ class Refiner {
     for (const FineFacet& facet : facets_) divide(facet, middles, finer);
     facets_ = std::move(finer);
     return true;
+  }
+
+  /// How far what each side stands for strays from it, as the facets beside it know it.
+  std::map<SideKey, double> sagittas() const {
+    std::map<SideKey, double> most;
+    for (const FineFacet& facet : facets_) {
+      for (size_t k = 0; k < 3; ++k) {
+        double& one = most[key_of(facet.corners[k], facet.corners[(k + 1) % 3])];
+        one = std::max(one, middle_of(facet, k).sagitta_mm);
+      }
+    }
+    return most;
   }
 
   struct Corner {
@@ -474,7 +490,7 @@ class Refiner {
   }
 
   const surface::UnderFacets& under_;
-  double chord_mm_, most_sagitta_ = 0.0;  ///< of sides that are settled
+  double chord_mm_;
   std::unordered_set<uint64_t> settled_;  ///< number_of() sides
   std::vector<Vec3> points_;
   std::vector<FineFacet> facets_;
@@ -492,6 +508,19 @@ FineFacets refine_facets(const Facets& facets, double chord_mm, size_t most) {
   Refiner refiner(facets, chord_mm);
   if (!refiner.refine(most) || refiner.stays_folded()) return {};
   return refiner.result();
+}
+
+FineFacets finest_facets(const Facets& facets, std::span<const double> chords_mm, size_t most) {
+  const double coarsest = chords_mm.back();
+  FineFacets coarse = refine_facets(facets, coarsest, most);
+  const auto count = static_cast<double>(coarse.mesh.triangles.size());
+  if (count == 0.0) return coarse;
+  for (const double chord : chords_mm.first(chords_mm.size() - 1)) {
+    if (count * coarsest / chord > static_cast<double>(most)) continue;
+    FineFacets fine = refine_facets(facets, chord, most);
+    if (!fine.mesh.triangles.empty()) return fine;
+  }
+  return coarse;
 }
 
 }  // namespace swarf::brep

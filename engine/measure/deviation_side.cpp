@@ -21,8 +21,6 @@ constexpr double kAway = 1.3694384 + 1e-6;
 constexpr double kInsideOffset = 1e-5;
 /// Rounding of the guess that bounds a search.
 constexpr double kGuessSlack = 1e-9;
-/// What a column leaves open at its rim, mm.
-constexpr double kClear = 2e-5;
 /// A facet that is found again is no farther than this from where it was found first, mm.
 constexpr double kSameFacet = 1e-6;
 /// Distances below this are rounding of doubles, mm.
@@ -49,9 +47,56 @@ Vec3 normal_of(const stock::DesignMesh& faces, uint32_t triangle, const Vec2& uv
   return surface::outward_normal(surface, surface.derivatives(uv.x(), uv.y()), uv);
 }
 
+/// The worst of its three vertices for each facet.
+std::vector<double> errors_of_stock(const ComparisonInput& input) {
+  std::vector<double> errors;
+  if (input.stock_error.empty()) return errors;
+  for (const auto& t : input.stock->mesh().triangles)
+    errors.push_back(std::max({input.stock_error[t[0]], input.stock_error[t[1]], input.stock_error[t[2]]}));
+  return errors;
+}
+
+/// Where the grid has rounded an edge, what that may be off: tips are cut off there, and what lies beside
+/// them is as exact as elsewhere.
+void add_edge_errors(const ComparisonInput& input, std::vector<double>& errors) {
+  if (input.stock_edge.empty()) return;
+  for (size_t f = 0; f < errors.size(); ++f) {
+    for (const uint32_t v : input.stock->mesh().triangles[f]) {
+      if (input.stock_edge[v] != 0) errors[f] = std::max(errors[f], input.edge);
+    }
+  }
+}
+
+/// TargetMesh::near_errors, but for those of edges.
+std::vector<double> near_errors_of(const mesh::SignedDistance& mesh, const std::vector<double>& errors) {
+  std::vector<double> near = errors;
+  for (uint32_t t = 0; t < errors.size(); ++t) {
+    if (errors[t] <= TargetMesh::kQuiet) continue;
+    const Corners corners{mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    mesh.tree().each_near(centroid_of(corners), radius_of(corners) + TargetMesh::kReach * errors[t],
+                          [&](uint32_t facet) { near[facet] = std::max(near[facet], errors[t]); });
+  }
+  return near;
+}
+
+double greatest_of(const std::vector<double>& errors) {
+  return errors.empty() ? 0.0 : *std::max_element(errors.begin(), errors.end());
+}
+
 }  // namespace
 
 ComparisonScene::ComparisonScene(const ComparisonInput& comparison) : input(comparison) {
+  stock_errors = errors_of_stock(input);
+  design_errors = input.design_errors;
+  if (design_errors.empty() && input.design_error > 0.0)
+    design_errors.assign(input.design->mesh().triangles.size(), input.design_error);
+  stock_near_errors = near_errors_of(*input.stock, stock_errors);
+  design_near_errors = near_errors_of(*input.design, design_errors);
+  const double most_of_stock = greatest_of(stock_errors);
+  add_edge_errors(input, stock_errors);
+  add_edge_errors(input, stock_near_errors);
+  stock = {input.stock, stock_errors, most_of_stock, stock_near_errors};
+  design = {input.design, design_errors, greatest_of(design_errors), design_near_errors};
   if (!input.open_design) return;
   bound_normals(*input.design, normal_axis, normal_spread_rad);
   if (input.edge <= 0.0) return;
@@ -72,12 +117,6 @@ bool ComparisonScene::faces_away(const Vec3& normal) const {
 DeviationSide::DeviationSide(const ComparisonScene& scene, bool on_design)
     : scene_(scene), in_(scene.input), on_design_(on_design) {}
 
-double DeviationSide::stock_error(uint32_t triangle) const {
-  if (in_.stock_error.empty()) return 0.0;
-  const auto& t = in_.stock->mesh().triangles[triangle];
-  return std::max({in_.stock_error[t[0]], in_.stock_error[t[1]], in_.stock_error[t[2]]});
-}
-
 bool DeviationSide::stock_edge(uint32_t triangle) const {
   if (in_.stock_edge.empty()) return false;
   const auto& t = in_.stock->mesh().triangles[triangle];
@@ -88,12 +127,9 @@ bool DeviationSide::near_border(const Vec3& point) const {
   return scene_.border != nullptr && scene_.border->nearest(point, in_.edge).distance_mm <= in_.edge;
 }
 
+/// What lies within the rounding of an edge is put down to the grid; beyond it the whole of it counts.
 void DeviationSide::discount(DeviationSample& sample) const {
-  sample.counted = sample.raw;
-  if (!sample.edge) return;
-  sample.error = 0.0;
-  const double rest = std::max(0.0, std::abs(sample.raw) - in_.edge);
-  sample.counted = std::copysign(rest, sample.raw);
+  sample.counted = sample.edge && std::abs(sample.raw) <= in_.edge ? 0.0 : sample.raw;
 }
 
 /// Signed distance of a point from the faces over the design, of which the facets say `facets_mm`.
@@ -124,7 +160,7 @@ DeviationSample DeviationSide::look_from_stock(uint32_t triangle, const Vec3& po
   sample.facet = seen.triangle;
   sample.foot = seen.foot;
   sample.raw = distance_to_faces(point, seen.distance_mm) - in_.allowance;
-  sample.error = stock_error(triangle) + in_.design_error;
+  sample.error = own_error(triangle) + opposite().error(seen.triangle);
   if (in_.open_design &&
       (seen.beyond_mm > kBorderSlack || in_.stock->face_normal(triangle).dot(seen.normal) < kFacing)) {
     sample.state = CellState::kBeyond;
@@ -142,7 +178,7 @@ DeviationSample DeviationSide::look_from_design(uint32_t triangle, const Vec3& t
   sample.foot = seen.foot;
   sample.raw =
       -distance_from_faces(target - in_.allowance * in_.design->face_normal(triangle), seen.distance_mm);
-  sample.error = stock_error(seen.triangle) + in_.design_error;
+  sample.error = own_error(triangle) + opposite().error(seen.triangle);
   sample.edge =
       stock_edge(seen.triangle) || near_border(target - in_.allowance * in_.design->face_normal(triangle));
   if (in_.allowance > 0.0) {
@@ -158,7 +194,7 @@ DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, const 
     away.state = CellState::kBeyond;
     return away;
   }
-  const Vec3 target = on_design_ ? Vec3(point + in_.allowance * in_.design->face_normal(triangle)) : point;
+  const Vec3 target = point + shift(triangle);
   double within = std::numeric_limits<double>::infinity();
   if (near != nullptr) {
     // The facet that a neighbour saw is hardly farther than the one to be found.
@@ -173,40 +209,6 @@ DeviationSample DeviationSide::look(uint32_t triangle, const Vec3& point, const 
     sample.state = CellState::kFar;
   discount(sample);
   return sample;
-}
-
-Corners DeviationSide::moved(uint32_t triangle, const Corners& corners) const {
-  if (!on_design_ || in_.allowance == 0.0) return corners;
-  const Vec3 by = in_.allowance * in_.design->face_normal(triangle);
-  return {corners[0] + by, corners[1] + by, corners[2] + by};
-}
-
-DistanceRange DeviationSide::range_over(uint32_t triangle, const Corners& cell, const DeviationSample& centre,
-                                        bool thorough) const {
-  const Corners corners = moved(triangle, cell);
-  const double r = radius_of(corners);
-  double low = centre.distance - r, high = centre.distance + r;
-  if (thorough) {
-    const auto facet = [&](size_t i) { return other().corner(centre.facet, i); };
-    double most = 0.0;
-    for (const Vec3& p : corners) {
-      const Vec3 q = mesh::closest_point_on_triangle(p, facet(0), facet(1), facet(2));
-      most = std::max(most, (q - p).norm());
-    }
-    low = std::max(low, -most);
-    high = std::min(high, most);
-    // Heights along the triangle's normal exceed distances where the sheets lean; half as much again is room.
-    const DistanceRange column =
-        clear_column(corners, other(), 1.5 * std::abs(centre.distance) + r, in_.open_design && !on_design_);
-    low = std::max(low, column.low);
-    high = std::min(high, column.high);
-    // Against an offset design the distance itself must not fall short.
-    if (in_.allowance > 0.0 && !on_design_ && low < in_.allowance && centre.distance > 0.0 &&
-        column.low >= -kClear)
-      low = std::max(low, least_distance(corners, other(), centre.distance));
-  }
-  if (on_design_) return {-high, -low};
-  return {low - in_.allowance, high - in_.allowance};
 }
 
 SampledSide::SampledSide(const ComparisonScene& scene, bool on_design)

@@ -23,8 +23,8 @@ struct DeviationSample {
   bool edge = false;         ///< at a rounded edge
   double inside = 0.0;       ///< how far inside the offset design: its concave corners are no surface of it
   double raw = 0.0;          ///< deviation, mm
-  double counted = 0.0;      ///< the same less what a rounded edge may be off
-  double error = 0.0;        ///< of grid and facets
+  double counted = 0.0;      ///< the same; 0 where a rounded edge may be off by so much
+  double error = 0.0;        ///< of grid and facets; at a rounded edge what that may be off
   double distance = 0.0;     ///< signed, to the other surface
   uint32_t facet = kUnseen;  ///< of the other surface
   static constexpr uint32_t kUnseen = 0xffffffffU;  ///< it faces away: nothing was looked for
@@ -38,6 +38,9 @@ double counted_of(const DeviationSample& sample, bool gouge);
 struct ComparisonScene {
   explicit ComparisonScene(const ComparisonInput& comparison);
   const ComparisonInput& input;
+  std::vector<double> stock_errors, design_errors;            ///< per facet, mm; empty: none
+  std::vector<double> stock_near_errors, design_near_errors;  ///< TargetMesh::near_errors
+  TargetMesh stock, design;
   /// The border of open patches as facets without area; null when there is none.
   TriMesh border_mesh;
   std::unique_ptr<mesh::MeshDistance> border;
@@ -57,15 +60,22 @@ class DeviationSide {
   const mesh::SignedDistance& other() const { return on_design_ ? *in_.stock : *in_.design; }
   bool on_design() const { return on_design_; }
   double pitch() const { return in_.pitch; }
+  const TargetMesh& opposite() const { return on_design_ ? scene_.stock : scene_.design; }
+  bool other_is_open() const { return in_.open_design && !on_design_; }
+  /// How far from the other surface a place of the own one should be, mm.
+  double offset_mm() const { return on_design_ ? 0.0 : in_.allowance; }
+  /// By which what an own facet stands for may stray from it, mm.
+  double own_error(uint32_t triangle) const {
+    return (on_design_ ? scene_.design : scene_.stock).error(triangle);
+  }
 
   /// At a point of own triangle `triangle`; `near`: a sample that was taken nearby, which shortens the
   /// search.
   DeviationSample look(uint32_t triangle, const Vec3& point, const DeviationSample* near) const;
-  /// The triangle as it is measured: that of the design moved by the allowance.
-  Corners moved(uint32_t triangle, const Corners& corners) const;
-  /// Bounds of `raw` over all of a cell whose centroid's sample is given: low and high.
-  DistanceRange range_over(uint32_t triangle, const Corners& cell, const DeviationSample& centre,
-                           bool thorough) const;
+  /// To where the triangle is measured: the design is moved by the allowance.
+  Vec3 shift(uint32_t triangle) const {
+    return on_design_ ? Vec3(in_.allowance * in_.design->face_normal(triangle)) : Vec3(Vec3::Zero());
+  }
 
  private:
   DeviationSample look_from_stock(uint32_t triangle, const Vec3& point, double within) const;
@@ -73,7 +83,6 @@ class DeviationSide {
   void discount(DeviationSample& sample) const;
   double distance_to_faces(const Vec3& point, double facets_mm) const;
   double distance_from_faces(const Vec3& point, double facets_mm) const;
-  double stock_error(uint32_t triangle) const;
   bool stock_edge(uint32_t triangle) const;
   bool near_border(const Vec3& point) const;
 

@@ -52,8 +52,10 @@ class Raster {
         (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[1].y() - p[0].y()) * (p[2].x() - p[0].x());
     if (twice_area == 0.0) return;
     for (int iv = v0; iv <= v1; ++iv) {
-      for (int iu = u0; iu <= u1; ++iu) {
-        const double u = grid_.low_u + (iu + 0.5) * grid_.step_u, v = grid_.low_v + (iv + 0.5) * grid_.step_v;
+      const double v = grid_.low_v + (iv + 0.5) * grid_.step_v;
+      const auto [first, last] = pixels_of_row(p, v);
+      for (int iu = std::max(u0, first); iu <= std::min(u1, last); ++iu) {
+        const double u = grid_.low_u + (iu + 0.5) * grid_.step_u;
         std::array<double, 3> w{};
         bool inside = true;
         for (size_t i = 0; i < 3 && inside; ++i) {
@@ -72,6 +74,23 @@ class Raster {
   Vec3 place(uint32_t v) const {
     const auto& p = mesh_.positions[v];
     return grid_.frame * Vec3(p[0], p[1], p[2]);
+  }
+  /// Those of a row that may lie inside, with one more at either end: needles fill little of their box.
+  std::pair<int, int> pixels_of_row(const std::array<Vec3, 3>& p, double v) const {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (size_t i = 0; i < 3; ++i) {
+      const Vec3 &a = p[i], &b = p[(i + 1) % 3];
+      if (std::min(a.y(), b.y()) > v || std::max(a.y(), b.y()) < v) continue;
+      const double share = a.y() == b.y() ? 0.0 : (v - a.y()) / (b.y() - a.y());
+      const double u = a.x() + share * (b.x() - a.x());
+      least = std::min({least, u, a.y() == b.y() ? b.x() : u});
+      most = std::max({most, u, a.y() == b.y() ? b.x() : u});
+    }
+    if (!(least <= most)) return {0, -1};
+    const auto pixel = [&](double u) {
+      return std::clamp((u - grid_.low_u) / grid_.step_u - 0.5, -1.0, grid_.n + 1.0);
+    };
+    return {static_cast<int>(std::floor(pixel(least))) - 1, static_cast<int>(std::ceil(pixel(most))) + 1};
   }
   std::pair<int, int> pixels(const std::array<Vec3, 3>& p, int axis) const {
     const double low = axis == 0 ? grid_.low_u : grid_.low_v, step = axis == 0 ? grid_.step_u : grid_.step_v;

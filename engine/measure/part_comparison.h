@@ -19,7 +19,8 @@ struct ComparisonInput {
   double allowance = 0.0;  ///< >= 0: the target is the design offset outward by this
   double excess = 0.01, gouge = 0.001;
   double pitch = 0.5;  ///< cells of both surfaces are halved until every point lies so near to a sample
-  double design_error = 0.0;  ///< by which the design's facets stray from what they stand for
+  double design_error = 0.0;          ///< by which the design's facets stray from what they stand for
+  std::vector<double> design_errors;  ///< the same per facet of the design's mesh; empty: it for all
   /// The surfaces over the design's facets: samples are measured from them, bounds from the facets and their
   /// error. Null: from the facets all.
   const stock::DesignMesh* faces = nullptr;

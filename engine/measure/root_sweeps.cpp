@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "measure/column_range.h"
+#include "stock/rays/surface_dexels.h"
 
 namespace swarf::measure {
 namespace {

@@ -140,14 +140,14 @@ TEST_F(Compare, PassesTwelveRightPairs) {
       }
     }
   };
-  expect_right("itself, nothing allowed", plate(15.0), plate(15.0), "--excess-um 0 --gouge-um 0");
+  expect_right("itself, a nanometre allowed", plate(15.0), plate(15.0), "--excess-um .001 --gouge-um .001");
   expect_right("other facets", plate(10.0), solid, "--excess-um .1 --gouge-um .1");
   expect_right("top .008 high", block({-20, -20, 0}, {20, 20, 10.008}), solid, "");
   expect_right("top .0008 low", block({-20, -20, 0}, {20, 20, 9.9992}), solid, "");
   expect_right("pocket floor .008 high", pocketed(6.008), pocketed(6.0), "");
   expect_right("mirror image of a symmetric part", mirrored(pocketed(6.0)), pocketed(6.0),
                "--excess-um .1 --gouge-um .1");
-  expect_right("two bodies", two_bodies(10.0), two_bodies(10.0), "--excess-um 0 --gouge-um 0");
+  expect_right("two bodies", two_bodies(10.0), two_bodies(10.0), "--excess-um .001 --gouge-um .001");
   expect_right("thin plate", block({-20, -20, 0}, {20, 20, 0.205}), block({-20, -20, 0}, {20, 20, 0.2}), "");
   expect_right("allowance of .3 mm", block({-20.3, -20.3, -0.3}, {20.3, 20.3, 10.3}), solid,
                "--allowance-mm .3 --excess-um 220");
@@ -193,6 +193,33 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
                                                     {beside, "mesh-nested-bodies"}}) {
     expect_refused(bad, solid, code);
     expect_refused(solid, bad, code);
+  }
+}
+
+/// A strip that a cut through the plate has set free.
+TEST_F(Compare, APieceThatIsCutLooseIsTold) {
+  TriMesh cut = block({-20, -20, 0}, {10, 20, 10});
+  swarf::test::append(cut, block({10.004, -20, 0}, {20, 20, 10}));
+  const json loose = measure(cut, block({-20, -20, 0}, {20, 20, 10}), "--gouge-um 5000", 1);
+  ASSERT_EQ(loose["pieces"]["loose"].size(), 1U) << loose["pieces"];
+  EXPECT_NEAR(loose["pieces"]["loose"][0]["volume_mm3"].get<double>(), 3998.4, 0.1);
+  EXPECT_NEAR(loose["pieces"]["loose"][0]["place_mm"][0].get<double>(), 15.002, 1e-3);
+  const auto told = run(cut, block({-20, -20, 0}, {20, 20, 10}), "--gouge-um 5000");
+  EXPECT_NE(told.output.find("2 pieces, the design is 1: loose is 3998 mm3 around (15.002, 0.000, 5.000) mm"),
+            std::string::npos)
+      << told.output;
+  EXPECT_EQ(measure(two_bodies(10.0), two_bodies(10.0), "", 0)["pieces"]["loose"].size(), 0U);
+}
+
+TEST_F(Compare, RefusesLimitsOfZeroAndDesignsWithoutThickness) {
+  const TriMesh solid = block({-20, -20, 0}, {20, 20, 10});
+  TriMesh sheet;
+  swarf::test::add_quad(sheet, {-20, -20, 5}, {20, -20, 5}, {20, 20, 5}, {-20, 20, 5});
+  swarf::test::add_quad(sheet, {-20, -20, 5}, {-20, 20, 5}, {20, 20, 5}, {20, -20, 5});
+  for (const auto& [design, options] :
+       {std::pair{solid, "--excess-um 0"}, {solid, "--gouge-um 0"}, {sheet, ""}}) {
+    const auto refused = run(solid, design, options);
+    EXPECT_EQ(refused.exit_code, 2) << options << refused.output;
   }
 }
 

@@ -371,6 +371,10 @@ TEST_F(MachineContacts, AMachineWithoutMeshesIsNotJudged) {
             std::string::npos)
       << bare.output;
   EXPECT_EQ(metrics()["machine_contacts"]["without_mesh_pairs"][0]["b"], "y");
+  const ProgramRun table =
+      run_swarf("run " + (folder_ / "scene.toml").string() + " --no-render -o " + out().string());
+  EXPECT_NE(table.output.find("not checked: no pairs"), std::string::npos) << table.output;
+  EXPECT_EQ(table.output.find("none comes nearer"), std::string::npos) << table.output;
 
   // A fixture alone is looked at, and the verdict names the pairs that were not.
   const ProgramRun vice =

@@ -181,7 +181,9 @@ TEST(TwoSetups, AFirstOneThatFailsDoesNotStopTheSecond) {
 TEST(TwoSetups, UpToOneOfThem) {
   const fs::path folder = folder_with("up_to", setups("", kTurned));
   const auto run = run_in(folder, "--setup 1");
-  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_NE(run.output.find("NOT JUDGED: 1 of 2 set-ups pass; 1 not run"), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("PASS: 1 of 2"), std::string::npos) << run.output;
   EXPECT_TRUE(read(folder / "out/setups.json").at("passes").is_null()) << "nobody knows of the second";
   EXPECT_FALSE(fs::exists(folder / "out/2_setup"));
   // All of them replace it whole, and are one JSON.
