@@ -26,8 +26,9 @@ namespace {
 /// The facets that the library keeps, as a CAD file of the shape gives them.
 Facets facets_of(const TopoDS_Shape& shape) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
-  const std::filesystem::path folder = test::fresh_folder(
-      std::string("fine_facets_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const std::filesystem::path folder =
+      test::scratch_folder() / testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::create_directories(folder);
   STEPControl_Writer writer;
   EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
   const std::string path = (folder / "part.stp").string();

@@ -258,13 +258,13 @@ TEST(PartComparison, FaultsOfFiveToFiftyMicrometresOfAPlateAreFoundToAMicrometre
 TEST(ClearColumn, HoldsTheHeightOfASheetOverAWholeTriangle) {
   const mesh::SignedDistance block(test::block({-20, -20, 0}, {20, 20, 10}));
   const Corners above{Vec3(-5, -5, 10.004), Vec3(7, -5, 10.008), Vec3(0, 9, 10.002)};
-  const DistanceRange range = clear_column(FlatPiece(above), {&block, {}, 0.0}, 0.5, false);
+  const DistanceRange range = clear_column(FlatPiece(above), {&block, {}, 0.0, {}}, 0.5, false);
   EXPECT_GE(range.high, 0.00799);  // the block's corner, seen along the normal
   EXPECT_LE(range.high, 0.00802);
   EXPECT_GE(range.low, -2e-5);
   const Corners below{Vec3(-5, -5, 9.996), Vec3(7, -5, 9.992), Vec3(0, 9, 9.998)};
-  EXPECT_LE(clear_column(FlatPiece(below), {&block, {}, 0.0}, 0.5, false).low, -0.00799);
-  EXPECT_LE(clear_column(FlatPiece(below), {&block, {}, 0.0}, 0.5, false).high, 2e-5);
+  EXPECT_LE(clear_column(FlatPiece(below), {&block, {}, 0.0, {}}, 0.5, false).low, -0.00799);
+  EXPECT_LE(clear_column(FlatPiece(below), {&block, {}, 0.0, {}}, 0.5, false).high, 2e-5);
 }
 
 TEST(MaterialColumns, GiveTheVolumesOfBlocksInEveryDirection) {
