@@ -315,9 +315,10 @@ std::array<double, 2> off_torus_um(const TriMesh& mesh, double ring, double tube
 /// Facets of a torus stray both ways. Its STEP file is divided as finely as the number of facets allows, and
 /// what is proven is as close as that.
 TEST_F(ComparePage, AMeshOfATorusAgainstItsStepFileIsProvenAsCloseAsItIsMeasured) {
-  constexpr double kRing = 30.0, kTube = 8.0, kCloseUm = 1.6;
+  // Facets of the STEP file stray by about 1 um, bounds end .5 um above what is found.
+  constexpr double kRing = 12.0, kTube = 4.0, kCloseUm = 2.0;
   swarf::test::write_text(folder_ / "torus.stp", step_torus(kRing, kTube));
-  const TriMesh mesh = swarf::test::torus(kRing, kTube, {0, 0, 0}, 160, 64);
+  const TriMesh mesh = swarf::test::torus(kRing, kTube, {0, 0, 0}, 100, 44);
   const std::array<double, 2> off = off_torus_um(mesh, kRing, kTube);
   ASSERT_GT(off[0], 2.0);
   ASSERT_GT(off[1], 8.0);
