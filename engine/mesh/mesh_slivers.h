@@ -7,7 +7,8 @@ namespace swarf::mesh {
 
 /// Flips the longest sides of triangles that are no higher than `height_mm` into the diagonals across them
 /// and their neighbours, while that makes the lower of the two higher. A closed mesh stays closed. What no
-/// flip helps remains. Returns how far no place of the surface moves beyond, mm: the heights of rounds add up.
+/// flip helps remains. Returns how far no place of the surface moves beyond, mm: the heights of rounds add
+/// up.
 double flip_slivers(WeldedMesh& mesh, double height_mm);
 
 /// The same for a mesh of floats. One without such triangles stays as it is; vertex normals do not.

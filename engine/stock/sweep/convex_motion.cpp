@@ -28,8 +28,8 @@ Nearest exactly(const Tangent& at) {
   return {at.t, at.value, at.value, at.normal};
 }
 
-/// Across the axis: F grows with rho, so it is least where the point comes nearest to the axis. What is left of
-/// the motion along the axis changes F by no more than its length.
+/// Across the axis: F grows with rho, so it is least where the point comes nearest to the axis. What is left
+/// of the motion along the axis changes F by no more than its length.
 Nearest nearest_across(const cutter::ConvexPiece& piece, const Vec3& P, const Vec3& D, double t_low,
                        double t_high) {
   const double length2 = D.head<2>().squaredNorm();
