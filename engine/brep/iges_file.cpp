@@ -86,7 +86,7 @@ size_t count_faces(const TopoDS_Shape& shape) {
   return count;
 }
 
-void transfer_iges(IGESControl_Reader& reader, double sewing_mm, Model& model) {
+void transfer_iges(IGESControl_Reader& reader, double sewing_mm, const Placement& placement, Model& model) {
   if (reader.ReadFile(model.file.c_str()) != IFSelect_RetDone) {
     throw InputError("cad-unreadable", {model.file}, "the IGES file is damaged or cut off",
                      "copy or export it again; STEP is the better format");
@@ -126,7 +126,7 @@ void transfer_iges(IGESControl_Reader& reader, double sewing_mm, Model& model) {
                               fmt::format("{} of {} faces are left after sewing", after, before),
                               "look for faces that lie on each other"});
   }
-  take_shape(shape, iges_names(reader), model);
+  take_placed(shape, iges_names(reader), placement, model);
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ bool is_cad_file(const std::string& path) {
   return is_step_name(path) || ends_with_any(path, {".igs", ".iges"});
 }
 
-Model read_iges(const std::string& path, double sewing_mm) {
+Model read_iges(const std::string& path, double sewing_mm, const Placement& placement) {
   // Columns 73 to 80 of every line hold its section and number.
   const std::string start = check_cad_file(path);
   if (start.size() < 80 || (start[72] != 'S' && start[72] != 'C')) {
@@ -148,13 +148,13 @@ Model read_iges(const std::string& path, double sewing_mm) {
   guarded(path, [&] {
     IGESControl_Reader reader;
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-    transfer_iges(reader, sewing_mm, model);
+    transfer_iges(reader, sewing_mm, placement, model);
   });
   return model;
 }
 
-Model read_cad(const std::string& path) {
-  return is_step_name(path) ? read_step(path) : read_iges(path);
+Model read_cad(const std::string& path, const Placement& placement) {
+  return is_step_name(path) ? read_step(path, placement) : read_iges(path, kSewing, placement);
 }
 
 }  // namespace swarf::brep

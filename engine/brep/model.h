@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/placement.h"
 #include "mesh/tri_mesh.h"
 #include "surface/face.h"
 #include "surface/under_facets.h"
@@ -50,12 +51,13 @@ struct Model {
 /// faces), "cad-no-unit", "cad-surface" (a surface that cannot be taken). What else the file holds and this
 /// does not take is a warning "cad-not-read" with the entity's number and name. Planes, cylinders, cones,
 /// spheres and tori become rational patches exactly; offset surfaces are approximated, which a warning tells.
-/// Instances of an assembly stand where they are placed.
-Model read_step(const std::string& path);
+/// Instances of an assembly stand where they are placed, and the whole where `placement` puts it.
+Model read_step(const std::string& path, const Placement& placement = {});
+inline constexpr double kSewing = 1e-3;  ///< mm
 /// Faces that hang together within `sewing_mm` become shells, since IGES seldom tells.
-Model read_iges(const std::string& path, double sewing_mm = 1e-3);
+Model read_iges(const std::string& path, double sewing_mm = kSewing, const Placement& placement = {});
 /// By the ending: .stp, .step, .p21, .igs, .iges (any case).
-Model read_cad(const std::string& path);
+Model read_cad(const std::string& path, const Placement& placement = {});
 bool is_cad_file(const std::string& path);
 
 /// The shape in flat facets.

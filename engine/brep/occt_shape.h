@@ -45,6 +45,8 @@ void guarded(const std::string& path, const std::function<void()>& work);
 
 /// Faces, edges, vertices and solids of a shape in mm into the model.
 void take_shape(const TopoDS_Shape& shape, const NameOf& name_of, Model& model);
+/// The same of a shape that is moved to its place; names are asked of the shape as it was read.
+void take_placed(const TopoDS_Shape& shape, const NameOf& name_of, const Placement& placement, Model& model);
 
 /// A face's whole surface as it is meshed; `low`, `high` are the library's parameters of the unit square.
 struct MeshedFace {

@@ -176,7 +176,8 @@ void refuse_damaged_geometry(const Handle(StepData_StepModel) & file, const std:
   }
 }
 
-void transfer(STEPControl_Reader& reader, const QuietSession& session, Model& model) {
+void transfer(STEPControl_Reader& reader, const QuietSession& session, const Placement& placement,
+              Model& model) {
   if (reader.ReadFile(model.file.c_str()) != IFSelect_RetDone) {
     const std::string said = session.said();
     throw InputError("cad-unreadable", {model.file},
@@ -200,13 +201,13 @@ void transfer(STEPControl_Reader& reader, const QuietSession& session, Model& mo
                      "the file holds no faces: points and curves alone, or nothing",
                      "export the part as a solid or as surfaces, not as a wireframe");
   }
-  take_shape(shape, names_of(reader, product_names(reader)), model);
+  take_placed(shape, names_of(reader, product_names(reader)), placement, model);
   tell_lost_faces(reader, shape, model);
 }
 
 }  // namespace
 
-Model read_step(const std::string& path) {
+Model read_step(const std::string& path, const Placement& placement) {
   refuse_other_format(path, check_cad_file(path));
   Model model;
   model.file = path;
@@ -214,7 +215,7 @@ Model read_step(const std::string& path) {
   guarded(path, [&] {
     STEPControl_Reader reader;
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-    transfer(reader, session, model);
+    transfer(reader, session, placement, model);
   });
   return model;
 }

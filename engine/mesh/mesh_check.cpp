@@ -117,6 +117,21 @@ bool box_holds(const Box& outer, const Box& inner) {
   return (inner.lower - outer.lower).minCoeff() >= -slack && (outer.upper - inner.upper).minCoeff() >= -slack;
 }
 
+/// How a design that reaches beyond the stock is brought into it.
+std::string outside_remedy(const Box& design, const Box& stock) {
+  const Vec3 room = stock.size() - design.size();
+  if (room.minCoeff() < -kFitSlack * stock.size().norm()) return "give both in mm, or make the stock larger";
+  Vec3 by = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    const double up = stock.lower[a] - design.lower[a], down = stock.upper[a] - design.upper[a];
+    by[a] = up > 0.0 ? up : std::min(down, 0.0);
+  }
+  return fmt::format(
+      "moved by X {:.3f} Y {:.3f} Z {:.3f} mm it lies in the stock: design.position_mm, or design.origin "
+      "= \"corner\" or \"centre\" puts that point of its top on the work's zero",
+      by.x(), by.y(), by.z());
+}
+
 void check_size(const Box& design, const Box& stock, const SourceLocation& where, Diagnostics& diagnostics) {
   const double share = design.size().norm() / stock.size().norm();
   const std::string numbers =
@@ -139,7 +154,7 @@ void check_size(const Box& design, const Box& stock, const SourceLocation& where
   diagnostics.error("mesh-outside-stock", where,
                     fmt::format("the design mesh ({} .. {} mm) reaches beyond the stock ({} .. {} mm)",
                                 text(design.lower), text(design.upper), text(stock.lower), text(stock.upper)),
-                    "give both in the work frame, or make the stock larger");
+                    outside_remedy(design, stock));
 }
 
 /// Facets with area; the others are told.

@@ -115,6 +115,21 @@ Box bounds(const TriMesh& mesh) {
   return box;
 }
 
+void place(TriMesh& mesh, const Placement& placement) {
+  if (placement.stays() || mesh.positions.empty()) return;
+  std::vector<Vec3> turned;
+  turned.reserve(mesh.positions.size());
+  for (const auto& p : mesh.positions) turned.push_back(placement.turn * Vec3(p[0], p[1], p[2]));
+  Box box{turned.front(), turned.front()};
+  for (const Vec3& p : turned) box = {box.lower.cwiseMin(p), box.upper.cwiseMax(p)};
+  const Vec3 by = placement.pose(box).translation();
+  for (size_t n = 0; n < turned.size(); ++n) {
+    const Eigen::Vector3f f = (turned[n] + by).cast<float>();
+    mesh.positions[n] = {f.x(), f.y(), f.z()};
+  }
+  mesh.normals.clear();
+}
+
 void compute_vertex_normals(TriMesh& mesh, double crease_rad) {
   const std::vector<Vec3> faces = face_normals(mesh);
   const CornerRows rows(mesh);

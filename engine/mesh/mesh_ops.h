@@ -2,12 +2,16 @@
 #pragma once
 
 #include "base/frames.h"
+#include "base/placement.h"
 #include "mesh/tri_mesh.h"
 
 namespace swarf::mesh {
 
 /// Bounding box of the positions, mm; the mesh must have at least one.
 Box bounds(const TriMesh& mesh);
+
+/// Moves a mesh to its place; one that moves loses its vertex normals.
+void place(TriMesh& mesh, const Placement& placement);
 
 /// Replaces the normals by angle-weighted means of the faces around each vertex (Thuermer & Wuethrich 1998).
 /// Faces whose normals differ by more than `crease_rad` from the face at hand take no part, and a vertex that

@@ -243,6 +243,7 @@ DesignSettings read_design(ConfigTable table, bool cl) {
     // A CAD file is one by its name, whatever key it stands behind.
     if (brep::is_cad_file(design.mesh_file)) design.name = "step";
     design.mesh_key = design.name;
+    design.placement = read_placement(table);
     if (design.name == "mesh") {
       const std::string unit = table.choice("mesh_unit", {"mm", "inch", "m"}, "mm");
       if (table.has("mesh_unit")) design.mesh_unit_mm = unit_mm_of(unit);

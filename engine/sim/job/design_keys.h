@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/config.h"
+#include "base/placement.h"
 #include "surface/surface.h"
 
 namespace swarf::sim {
@@ -39,6 +40,7 @@ struct DesignSettings {
   std::vector<RuledFace> faces;        ///< kRuledFaces, of mesh_file
   std::string mesh_key = "mesh";       ///< that names it: "step" for a CAD file
   std::optional<double> mesh_unit_mm;  ///< of the numbers of a mesh; not said: mm
+  Placement placement;                 ///< of mesh_file in the work
   SourceLocation mesh_where;
   double chord_mm = 5e-3;                     ///< CAD files: facets stray no farther from the faces
   std::vector<surface::SurfacePtr> surfaces;  ///< kAnalytic

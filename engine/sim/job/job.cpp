@@ -316,7 +316,7 @@ void tell_gaps(const brep::Model& model, const Scene& scene, Diagnostics& diagno
 TriMesh cad_facets(Job& job, bool drives, Diagnostics& diagnostics) {
   const DesignSettings& design = job.scene.design;
   const SourceLocation where{design.mesh_file};
-  const brep::Model model = brep::read_cad(design.mesh_file);
+  const brep::Model model = brep::read_cad(design.mesh_file, design.placement);
   for (const Diagnostic& warning : model.warnings)
     diagnostics.warning(warning.code, warning.where, warning.text, warning.fix);
   size_t open = model.faces.size();
@@ -369,6 +369,7 @@ TriMesh load_design_mesh(const Job& job, Diagnostics& diagnostics) {
   const auto unit = static_cast<float>(design.mesh_unit_mm.value_or(1.0));
   for (auto& p : mesh.positions)
     for (float& coordinate : p) coordinate *= unit;
+  mesh::place(mesh, design.placement);
   double tool_mm = std::numeric_limits<double>::infinity();
   for (const cutter::Cutter& tool : job.scene.tools) tool_mm = std::min(tool_mm, tool.diameter_mm);
   if (!design.mesh_unit_mm && !mesh.positions.empty())

@@ -64,6 +64,7 @@ void read_ruled_faces(ConfigTable& table, DesignSettings& design) {
   design.kind = DesignKind::kRuledFaces;
   design.mesh_key = "step";
   design.mesh_file = table.text("step");
+  design.placement = read_placement(table);
   constexpr int kMostFaces = 1000000;
   for (ConfigTable& face : table.tables("face")) {
     RuledFace one;
@@ -78,7 +79,7 @@ void read_ruled_faces(ConfigTable& table, DesignSettings& design) {
 }
 
 std::vector<surface::SurfacePtr> load_ruled_faces(const DesignSettings& design, Diagnostics& diagnostics) {
-  const brep::Model model = brep::read_cad(design.mesh_file);
+  const brep::Model model = brep::read_cad(design.mesh_file, design.placement);
   for (const Diagnostic& warning : model.warnings)
     diagnostics.warning(warning.code, warning.where, warning.text, warning.fix);
   std::vector<surface::SurfacePtr> surfaces;

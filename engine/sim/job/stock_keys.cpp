@@ -118,6 +118,16 @@ Pose read_pose(ConfigTable table) {
                  vector_of(table, "rotation_deg", Vec3::Zero()));
 }
 
+Placement read_placement(ConfigTable& table) {
+  const Pose pose =
+      pose_of(vector_of(table, "position_mm", Vec3::Zero()), vector_of(table, "rotation_deg", Vec3::Zero()));
+  const std::string origin = table.choice("origin", {"work", "corner", "centre"}, "work");
+  return {pose.linear(), pose.translation(),
+          origin == "corner"   ? PartOrigin::kCorner
+          : origin == "centre" ? PartOrigin::kCentre
+                               : PartOrigin::kFile};
+}
+
 RawSettings read_raw(ConfigTable& table) {
   RawSettings raw;
   raw.where = table.where("box_mm");

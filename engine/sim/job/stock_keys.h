@@ -6,6 +6,7 @@
 
 #include "base/config.h"
 #include "base/diagnostics.h"
+#include "base/placement.h"
 #include "stock/raw/raw_shape.h"
 
 namespace swarf::sim {
@@ -38,6 +39,8 @@ struct RawSettings {
 /// { position_mm = [..], rotation_deg = [..] }: about the fixed axes, X first, then Y, then Z. Quarter turns
 /// are exact.
 Pose read_pose(ConfigTable table);
+/// The same from the table that also says of which point: origin = "work", "corner" or "centre".
+Placement read_placement(ConfigTable& table);
 
 /// Reads the keys of all forms but the box and its key: more than one form is "two-shapes", with both places.
 /// `file` is as the scene writes it.

@@ -35,7 +35,8 @@ std::string codes(const TriMesh& mesh, std::string* text = nullptr, const Box* s
   check_design_mesh(mesh, "design.stl", stock, diagnostics);
   std::string found;
   for (const Diagnostic& d : diagnostics.list()) found += (found.empty() ? "" : " ") + d.code;
-  if (text != nullptr && !diagnostics.list().empty()) *text = diagnostics.list().front().text;
+  if (text != nullptr && !diagnostics.list().empty())
+    *text = diagnostics.list().front().text + "; " + diagnostics.list().front().fix;
   return found;
 }
 
@@ -83,6 +84,10 @@ TEST(MeshCheck, SizesThatDoNotFitTheStock) {
   EXPECT_NE(text.find("(3.937, 3.150, 1.575)"), std::string::npos) << text;
   EXPECT_EQ(codes(box(100 * 25.4F, 80 * 25.4F, 40 * 25.4F)), "mesh-scaled-by-25");
   EXPECT_EQ(codes(box(100, 80, 50)), "mesh-outside-stock");
+  TriMesh aside = box(100, 80, 40);
+  for (auto& p : aside.positions) p[0] += 30.0F;
+  EXPECT_EQ(codes(aside, &text), "mesh-outside-stock");
+  EXPECT_NE(text.find("moved by X -25.000 Y 0.000 Z 0.000 mm"), std::string::npos) << text;
   EXPECT_EQ(codes(box(30, 20, 10)), "");  // a small part in a large block is nobody's mistake
 }
 
