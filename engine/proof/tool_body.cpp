@@ -151,7 +151,8 @@ constexpr std::array<double, 2> kFlankShares{1.0, 0.1};
 /// below, whose hull the old tip and that ring span, is within g of the axis. Empty: nothing is left.
 ReducedBody pointed_body(const ConvexPiece& piece, const std::vector<Vec2>& outline,
                          const PointedReduction& by) {
-  const Vec2 tip = outline[0], cone = outline[1] - tip;
+  const Vec2& tip = outline[0];
+  const Vec2 cone = outline[1] - tip;
   const Vec2 cone_normal = Vec2(cone.y(), -cone.x()).normalized();
   const std::vector<Face> planes = half_planes(piece, by.outward);
   const auto moved_in = [&](double mm) {
