@@ -8,9 +8,8 @@
 //   shrunk    every point of K goes towards the axis by b and towards the middle of its height by at most a,
 //             a^2 + b^2 <= g^2
 //   erosion   for a K without sharp edges below: the points with a ball of radius g in K
-//   pointed   for a K with a sharp tip: its faces moved inwards, which leaves the tip too far off, and with
-//   it
-//             a piece of the axis from g over the tip up to the point of what is left
+//   pointed   for a K with a sharp tip: its faces moved inwards, which leaves the tip too far off; and a
+//             piece of the axis, from g over the tip up to the point of what is left
 #pragma once
 
 #include <vector>
