@@ -33,6 +33,9 @@ constexpr render::Rgb kDesignLine{0.02F, 0.62F, 0.95F};
 constexpr float kDesignTube = 1.5F;  // px: of the design on a machine that is cut open
 constexpr double kPartWidth = 0.2, kDesignWidth = 0.07, kWhiskerWidth = 0.08;  // of the height of text
 
+/// Of rays whose heights differ by less than this the first is named: rounding does not choose the place; mm.
+constexpr double kAlike = 1e-9;
+
 /// A measuring ray, or what two of them say in between.
 struct SectionRay {
   Vec3 foot_W = Vec3::Zero(), normal_W = Vec3::Zero();
@@ -62,8 +65,8 @@ void add_rays(const stock::SurfaceDexels& dexels, const sim::SectionPlane& plane
                              one.height_mm + t * (other.height_mm - one.height_mm)});
     found.farthest_mm = std::max({found.farthest_mm, std::abs(above), std::abs(other_above)});
     for (const SectionRay& end : {one, other}) {
-      if (!found.lowest || end.height_mm < found.lowest->height_mm) found.lowest = end;
-      if (!found.highest || end.height_mm > found.highest->height_mm) found.highest = end;
+      if (!found.lowest || end.height_mm < found.lowest->height_mm - kAlike) found.lowest = end;
+      if (!found.highest || end.height_mm > found.highest->height_mm + kAlike) found.highest = end;
     }
   }
 }
